@@ -22,11 +22,11 @@ lint:
 
 # the tests of the README
 test:
-    cargo test --workspace
+    cargo test --release --workspace
 
 # those that take long
 test-long:
-    cargo test --workspace -- --ignored
+    cargo test --release --workspace -- --ignored
 
 # mutated inputs, killed runs, a public database of sections, odd surfaces, error bars of forces and shocks that come to rest, for the night; they print what is not survived
 night count="10000":
@@ -46,6 +46,16 @@ pages:
 # bring the generated pages of the book up to date
 book:
     ALULA_WRITE=1 cargo test -p alula --test tidy
+    ALULA_WRITE=1 cargo test -p alula-cli --test command book
+
+# the table of accuracy of the book, measured again: hours; `--fast` or a name as filter are shorter
+accuracy *filter:
+    -cargo run --release -- verify --json {{filter}} > target/claims.json
+    python3 book/accuracy.py target/claims.json
+
+# the program and the Python wheel of a release, in `dist/`
+release:
+    tools/release.sh
 
 # particles a second of the kernels, one thread
 bench *filter:

@@ -12,35 +12,15 @@
 //! | `polar` | a section in a loop over angles of attack, each flow relaxed by [`time::relax`] |
 //! | `van_der_pol` | [`time::ordinary`]: equations of one's own by [`time::harmonic`] and by a march |
 //! | `section_on_springs` | [`structure`] and gas as one system, [`coupling::Coupled`] |
-pub mod math;
+pub use alula_base::{exact, math, physics, system, time};
+pub use alula_case::case;
+pub use alula_cloud::cloud;
+pub use alula_flow::scheme;
+pub use alula_geometry::{geometry, motion, structure};
+pub use alula_report::{observe, record, report};
+pub use alula_solid::solid;
 
-pub mod case;
-
-pub mod system;
-
-pub mod geometry;
-
-pub mod motion;
-
-pub mod structure;
-
-pub mod physics;
-
-pub mod exact;
-
-pub mod cloud;
 pub mod coupling;
-
-pub mod scheme;
-
-pub mod solid;
-
-pub mod time;
-
-pub mod observe;
-
-pub mod report;
-
-pub mod verify;
-
+pub mod problem;
 pub mod run;
+pub mod verify;

@@ -1,6 +1,6 @@
 """Checks the schema that `alula schema` prints with an independent validator: every case of the repository is valid, nonsense is not.
 
-    python3 tests/read_schema.py target/debug/alula
+    python3 tests/read_schema.py target/release/alula
 
 Needs the package `jsonschema`.
 """

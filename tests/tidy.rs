@@ -9,7 +9,7 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 
 /// Modules by floor: each may use strictly lower floors only.
-const FLOORS: [(&str, u8); 18] = [
+const FLOORS: [(&str, u8); 20] = [
     ("math", 0),
     ("case", 0),
     ("system", 1),
@@ -24,14 +24,16 @@ const FLOORS: [(&str, u8); 18] = [
     ("solid", 3),
     ("coupling", 4),
     ("observe", 4),
-    ("report", 5),
-    ("verify", 5),
-    ("run", 6),
-    ("lib", 7),
+    ("problem", 5),
+    ("record", 5),
+    ("report", 6),
+    ("verify", 6),
+    ("run", 7),
+    ("lib", 8),
 ];
 
 /// Modules that may use less than their floor allows.
-const NARROW: [(&str, &[&str]); 9] = [
+const NARROW: [(&str, &[&str]); 10] = [
     ("system", &["math"]),
     ("motion", &["math", "case"]),
     ("structure", &["math", "case"]),
@@ -39,19 +41,19 @@ const NARROW: [(&str, &[&str]); 9] = [
     ("exact", &["math"]),
     ("time", &["math", "system"]),
     ("observe", &["math", "case"]),
-    ("report", &["math", "case", "observe"]),
+    ("record", &["math", "case", "observe"]),
+    ("report", &["math", "case", "observe", "record"]),
     ("verify", &["math", "case", "exact"]),
 ];
 
 /// Modules whose files use one another one way only.
-const ONE_WAY: [&str; 5] = ["case", "cloud", "scheme", "solid", "run"];
+const ONE_WAY: [&str; 6] = ["case", "cloud", "scheme", "solid", "problem", "run"];
 
 /// Who may open files.
-const OPENS_FILES: [&str; 8] = [
-    "src/case/",
-    "src/observe/",
-    "src/report/",
-    "src/geometry/mod.rs",
+const OPENS_FILES: [&str; 7] = [
+    "crates/case/src/",
+    "crates/report/src/",
+    "crates/geometry/src/geometry/mod.rs",
     "src/run/folder.rs",
     "src/run/measure/",
     "src/run/verify.rs",
@@ -60,7 +62,7 @@ const OPENS_FILES: [&str; 8] = [
 /// Who may contain `unsafe`: nobody so far.
 const UNSAFE: [&str; 0] = [];
 /// Who may start threads.
-const PARALLEL: [&str; 1] = ["src/math/sweep.rs"];
+const PARALLEL: [&str; 1] = ["crates/base/src/math/sweep.rs"];
 /// Longest file, tests left out.
 const LONGEST_FILE: usize = 600;
 /// Longest line of a hand-written Markdown table or of a message is free; of code `rustfmt` decides.
@@ -124,6 +126,17 @@ fn files(folder: &str, suffix: &str) -> Vec<String> {
     found
 }
 
+/// Sources of the library: of the crate that users see, and of those that its floors are made of.
+fn sources() -> Vec<String> {
+    let floors = files("crates", ".rs");
+    files("src", ".rs").into_iter().chain(floors.into_iter().filter(|p| p.contains("/src/"))).collect()
+}
+
+/// The sources of one module.
+fn sources_of(module: &str) -> Vec<String> {
+    sources().into_iter().filter(|p| module_of(p) == module).collect()
+}
+
 /// Source without its tests and without comments.
 fn code(path: &str) -> String {
     let text = read(path);
@@ -139,7 +152,7 @@ fn uncommented(text: &str) -> String {
 }
 
 fn module_of(path: &str) -> &str {
-    let inner = path.trim_start_matches("src/");
+    let inner = path.split_once("src/").map_or(path, |(_, inner)| inner);
     inner.split('/').next().unwrap_or_default().trim_end_matches(".rs")
 }
 
@@ -190,7 +203,7 @@ fn assert_none(problems: &[String], rule: &str) {
 #[test]
 fn modules_use_lower_floors_only() {
     let mut problems = Vec::new();
-    for path in files("src", ".rs") {
+    for path in sources() {
         let own = module_of(&path);
         for used in uses(&uncommented(&read(&path))).into_iter().filter(|u| u != own) {
             let narrow = NARROW.iter().find(|(m, _)| *m == own);
@@ -206,16 +219,16 @@ fn modules_use_lower_floors_only() {
 
 /// Files of `module` that each of its files names after `super::`.
 fn uses_within(module: &str) -> BTreeMap<String, Vec<String>> {
-    let folder = format!("src/{module}");
-    let name = |path: &str| path.trim_start_matches(&format!("{folder}/")).trim_end_matches(".rs").to_owned();
-    let all: Vec<String> = files(&folder, ".rs").iter().map(|p| name(p)).collect();
+    let folder = format!("src/{module}/");
+    let name = |path: &str| path.split_once(&folder).map_or(path, |(_, p)| p).trim_end_matches(".rs").to_owned();
+    let all: Vec<String> = sources_of(module).iter().map(|p| name(p)).collect();
     let of = |path: &String| {
         let text = code(path);
         let named = text.split("super::").skip(1).map(|t| t.split(|c: char| c != '_' && !c.is_alphanumeric()).next());
         let others = named.flatten().filter(|m| all.iter().any(|n| n == m) && *m != name(path));
         (name(path), others.map(str::to_owned).collect())
     };
-    files(&folder, ".rs").iter().map(of).collect()
+    sources_of(module).iter().map(of).collect()
 }
 
 #[test]
@@ -242,7 +255,7 @@ fn files_of_a_module_form_no_circle() {
 #[test]
 fn files_are_opened_where_it_is_allowed() {
     let words = ["std::fs", "File::", "OpenOptions", "TcpStream", "std::net"];
-    let mut problems = offenders("src", &words, &OPENS_FILES);
+    let mut problems = offenders(sources(), &words, &OPENS_FILES);
     problems.retain(|p| !p.contains("ClaimFile::"));
     assert_none(
         &problems,
@@ -253,29 +266,29 @@ fn files_are_opened_where_it_is_allowed() {
 #[test]
 fn only_the_command_prints() {
     let words = ["println!", "print!(", "eprintln!", "eprint!(", "stdout()", "stderr()"];
-    assert_none(&offenders("src", &words, &[]), "the library does not print");
+    assert_none(&offenders(sources(), &words, &[]), "the library does not print");
 }
 
 #[test]
 fn nothing_is_unsafe_and_only_sweeps_are_parallel() {
-    assert_none(&offenders("src", &["unsafe "], &UNSAFE), "`unsafe` needs an audit");
+    assert_none(&offenders(sources(), &["unsafe "], &UNSAFE), "`unsafe` needs an audit");
     let words = ["rayon::", "thread::spawn"];
-    assert_none(&offenders("src", &words, &PARALLEL), "every parallel loop is in math::sweep");
+    assert_none(&offenders(sources(), &words, &PARALLEL), "every parallel loop is in math::sweep");
 }
 
 #[test]
 fn integrators_know_no_physics_and_physics_no_particles() {
     let words = ["density", "Primitive", "Conserved", "pressure"];
-    let mut problems = offenders("src/time", &words, &[]);
-    problems.extend(offenders("src/physics", &["usize]", "particle", "neighbour"], &[]));
+    let mut problems = offenders(sources_of("time"), &words, &[]);
+    problems.extend(offenders(sources_of("physics"), &["usize]", "particle", "neighbour"], &[]));
     problems.retain(|p| !p.contains("hint"));
     assert_none(&problems, "time names no physics, physics no particles");
 }
 
 /// Lines of code outside the places allowed that hold one of the words.
-fn offenders(folder: &str, words: &[&str], allowed: &[&str]) -> Vec<String> {
+fn offenders(sources: Vec<String>, words: &[&str], allowed: &[&str]) -> Vec<String> {
     let mut found = Vec::new();
-    for path in files(folder, ".rs").into_iter().filter(|p| !allowed.iter().any(|a| p.starts_with(a))) {
+    for path in sources.into_iter().filter(|p| !allowed.iter().any(|a| p.starts_with(a))) {
         for line in code(&path).lines().filter(|l| words.iter().any(|w| l.contains(w))) {
             found.push(format!("{path}: {}", line.trim()));
         }
@@ -286,7 +299,7 @@ fn offenders(folder: &str, words: &[&str], allowed: &[&str]) -> Vec<String> {
 #[test]
 fn files_are_short() {
     let mut long = Vec::new();
-    for path in files("src", ".rs").into_iter().chain(files("cli/src", ".rs")) {
+    for path in sources().into_iter().chain(files("cli/src", ".rs")) {
         let n = code(&path).lines().count();
         if n > LONGEST_FILE {
             long.push(format!("{path}: {n} lines"));
@@ -297,7 +310,7 @@ fn files_are_short() {
 
 #[test]
 fn every_file_says_what_it_is() {
-    let all = files("src", ".rs").into_iter().chain(files("cli/src", ".rs")).chain(files("tests", ".rs"));
+    let all = sources().into_iter().chain(files("cli/src", ".rs")).chain(files("tests", ".rs"));
     let all = all.chain(files("examples", ".rs"));
     let silent: Vec<String> = all.filter(|p| !read(p).starts_with("//!")).collect();
     assert_none(&silent, "a file starts with its page, `//! ...`");
@@ -436,7 +449,7 @@ fn tracked() -> Vec<String> {
             .map(str::to_string)
             .collect();
     }
-    ["src", "cli", "tests", "examples", "benches", "book", "cases", "verification"]
+    ["src", "crates", "cli", "tests", "examples", "benches", "book", "cases", "verification"]
         .iter()
         .flat_map(|f| files(f, ""))
         .collect()
@@ -445,7 +458,7 @@ fn tracked() -> Vec<String> {
 /// Where an equation stands: file and the name of what carries it.
 fn coded() -> BTreeMap<usize, Vec<(String, String)>> {
     let mut found: BTreeMap<usize, Vec<(String, String)>> = BTreeMap::new();
-    for path in files("src", ".rs") {
+    for path in sources() {
         let text = read(&path);
         let lines: Vec<&str> = text.lines().map(str::trim).collect();
         for (k, line) in lines.iter().enumerate() {
@@ -481,7 +494,7 @@ fn name_of(line: &str) -> String {
 /// Tests by the equations they name in the comment beside `#[test]`: `#[test] // eq10, eq15`.
 fn proofs() -> BTreeMap<usize, Vec<String>> {
     let mut found: BTreeMap<usize, Vec<String>> = BTreeMap::new();
-    for path in files("src", ".rs").into_iter().chain(files("tests", ".rs")) {
+    for path in sources().into_iter().chain(files("tests", ".rs")) {
         let text = read(&path);
         let lines: Vec<&str> = text.lines().map(str::trim).collect();
         for (k, line) in lines.iter().enumerate() {
@@ -518,7 +531,7 @@ fn every_equation_is_coded_once_and_proven_or_excused() {
         }
     }
     problems.extend(coded.keys().chain(excuses.keys()).filter(|n| **n > EQUATIONS.len()).map(|n| format!("eq{n}?")));
-    assert_none(&problems, "each equation stands exactly once in src/, with a test, or is excused");
+    assert_none(&problems, "each equation stands exactly once in the sources, with a test, or is excused");
     fresh("book/equations.md", &equations_page(&coded, &proofs, &excuses));
 }
 

@@ -198,7 +198,7 @@ impl Flutter {
             vg: vg.unbind(),
             lco: list(py, &found.lco.iter().map(|c| serde_json::to_value(c).unwrap_or_default()).collect::<Vec<_>>())?,
             units: python_of(py, &units(all, crossings.iter().chain(&motions)))?,
-            conventions: found.conventions.to_owned(),
+            conventions: found.conventions.clone(),
             warnings: all.iter().flat_map(warning).collect(),
             folder,
             whole: serde_json::to_value(found).unwrap_or_default(),

@@ -2,13 +2,13 @@
 use std::path::Path;
 
 use super::build_cloud;
-use super::error::RunError;
 use super::look::Snapshot;
-use super::{setup, solids};
 use crate::case::{Case, Side, Sides};
 use crate::cloud::Cloud;
 use crate::geometry::dimension;
 use crate::math::Vector;
+use crate::problem;
+use crate::problem::RunError;
 
 /// Names of the sides of the domain: the smallest and the largest coordinate of each axis.
 const SIDES: [[&str; 2]; 3] = [["x_min", "x_max"], ["y_min", "y_max"], ["z_min", "z_max"]];
@@ -39,8 +39,8 @@ pub struct CloudTable {
 
 /// Builds the cloud of a case whose file names refer to the folder `input`, without running it.
 pub fn cloud_table(case: &Case, input: &Path) -> Result<CloudTable, RunError> {
-    solids::with_gas(case)?;
-    setup::supported(case)?;
+    problem::solids::with_gas(case)?;
+    problem::supported(case)?;
     match dimension(case) {
         2 => table::<2>(case, input),
         _ => table::<3>(case, input),

@@ -10,20 +10,16 @@ use serde::Serialize;
 
 use super::accuracy;
 use super::disk;
-use super::recipe::harmonics;
 use super::stage::{Stage, Task};
 use super::time_left::Portion;
-use crate::case::{Case, LoadErrors, ParticleMotion, Polar, Temporal};
+use crate::case::{Case, LoadErrors, Polar, Temporal};
 use crate::math::sweep::threads;
+use crate::problem::bytes_each;
+use crate::problem::numerics::harmonics;
+use crate::problem::spacing;
 
 /// Bytes of a process that computes nothing.
 const PROGRAM: f64 = 11.4e6;
-/// Bytes of each particle in the plane: steady, what steps in time add, a balance without and with each harmonic, explicit steps
-/// of particles at rest and in motion.
-const STEADY_BYTES: f64 = 1830.0;
-const STEP_BYTES: f64 = 850.0;
-const BALANCE_BYTES: [f64; 2] = [3100.0, 1750.0];
-const EXPLICIT_BYTES: [f64; 2] = [1000.0, 1300.0];
 /// Bytes that pictures and report take at their peak: always, with each pixel of a picture, with each of it and each thread, with
 /// each particle.
 const PICTURES_BYTES: [f64; 4] = [50e6, 7.0, 33.0, 350.0];
@@ -31,8 +27,6 @@ const PICTURES_BYTES: [f64; 4] = [50e6, 7.0, 33.0, 350.0];
 const PICTURES_SECONDS: [f64; 2] = [0.5, 2.2];
 /// What they take beyond that in space, always and with each particle: walls, planes and sections.
 const SPACE_PICTURES_SECONDS: [f64; 2] = [1.5, 7e-5];
-/// Bytes of a particle in space over those in the plane.
-const SPACE_BYTES: f64 = 1.3;
 /// Residuals that a steady state takes on a plane cloud of [`USUAL`] particles, and in space.
 const STEADY: [f64; 2] = [570.0, 520.0];
 /// Growth of that number with the number of particles, in the plane and in space.
@@ -129,7 +123,7 @@ impl Sized<'_> {
     pub(crate) fn least(&self) -> Option<Cost> {
         let sizes = self.sizes();
         let enough = accuracy::CLOUDS[self.dimension - 2];
-        (accuracy::asked(self.case).is_some() && sizes.len() > enough).then(|| self.on(&sizes[..enough], || 0.0))
+        (spacing::asked(self.case).is_some() && sizes.len() > enough).then(|| self.on(&sizes[..enough], || 0.0))
     }
 
     /// What it takes on clouds of these numbers of particles.
@@ -137,7 +131,7 @@ impl Sized<'_> {
         let points = 1.0 + NEXT_POINT * (self.case.polar.as_ref().map_or(1, Polar::len) as f64 - 1.0);
         let largest = sizes.iter().fold(0.0, |m: f64, n| m.max(*n));
         let each = self.evaluation / self.particles.max(1) as f64;
-        let again = if accuracy::asked(self.case).is_some() { 1.0 } else { AGAIN };
+        let again = if spacing::asked(self.case).is_some() { 1.0 } else { AGAIN };
         let states =
             sizes.iter().enumerate().map(|(k, n)| if k == 0 { 1.0 } else { again } * n * each * self.steady(*n));
         let relaxed = self.pace() * points * states.sum::<f64>();
@@ -179,7 +173,7 @@ impl Sized<'_> {
     fn sizes(&self) -> Vec<f64> {
         let n = self.particles as f64;
         let following = |cycle: u32| if cycle == 0 { 1.0 } else { self.pilot.map_or(1.0, |p| p.following) };
-        match accuracy::asked(self.case) {
+        match spacing::asked(self.case) {
             Some(asked) => {
                 let family = accuracy::family(self.case, &asked, self.sizes, self.dimension);
                 let size = |stage: &Stage| following(stage.cycle) * (self.sizes)(stage.factor);
@@ -260,16 +254,16 @@ pub(crate) fn portion(
     // the cloud of the case itself is built before the first stage
     let opening = n * BUILDING[dimension - 2];
     let work: Vec<f64> = [opening].into_iter().chain(of_stages(case, stages, n, (dimension, period))).collect();
-    let family = accuracy::asked(case).is_some();
+    let family = spacing::asked(case).is_some();
     Portion { may_end_early: family && k + 1 < stages.len(), ..Portion::of(k + 1, &work) }
 }
 
 /// Work of the stages, in residuals of a particle.
 fn of_stages(case: &Case, stages: &[Stage], n: f64, (dimension, period): (usize, Option<f64>)) -> Vec<f64> {
-    let adapted = accuracy::asked(case).is_none();
+    let adapted = spacing::asked(case).is_none();
     let work = |stage: &Stage| {
         let n =
-            n * accuracy::alike(stage.factor, dimension) * if adapted { ADAPTED.powi(stage.cycle as i32) } else { 1.0 };
+            n * spacing::alike(stage.factor, dimension) * if adapted { ADAPTED.powi(stage.cycle as i32) } else { 1.0 };
         let finer = (n / USUAL).powf(STEP_GROWTH);
         let each = match stage.task {
             Task::Relax if stage.cycle > 0 && adapted => AGAIN * usual(n, dimension),
@@ -294,17 +288,6 @@ pub(crate) fn share_of_steady(dimension: usize, columns: usize) -> f64 {
 fn steps(case: &Case, period: Option<f64>) -> f64 {
     let step = case.step_length(period).filter(|step| *step > 0.0);
     step.zip(case.end(period)).map_or(1.0, |(step, end)| end / step)
-}
-
-/// Bytes that each particle of a run takes.
-pub(crate) fn bytes_each(case: &Case, dimension: usize) -> f64 {
-    let plane = match &case.time {
-        Temporal::Steady(_) | Temporal::Newmark(_) | Temporal::Modes(_) => STEADY_BYTES,
-        Temporal::Dual(_) => STEADY_BYTES + STEP_BYTES,
-        Temporal::Harmonics(_) => BALANCE_BYTES[0] + BALANCE_BYTES[1] * f64::from(harmonics(case)),
-        Temporal::Explicit(_) => EXPLICIT_BYTES[usize::from(case.moves() && case.particles() != ParticleMotion::Rigid)],
-    };
-    if dimension == 2 { plane } else { SPACE_BYTES * plane }
 }
 
 #[cfg(test)]

@@ -16,29 +16,29 @@
 //!
 //! A point that fails or does not converge from there is tried once from rest; one that does not from rest is told with its reason,
 //! and the polar goes on.
-use super::accuracy;
-use super::error::RunError;
+use std::sync::Arc;
+
 use super::look::{GasView, load_axes, momentum};
-use super::one_cloud::times_the_spacing;
 use super::recipe;
 use super::record::Log;
 use super::record::family;
 use super::record::polar::PolarPoint;
 use super::record::saved::{Kept, raised};
-use super::setup::{self, Site, Solver};
+use super::setup::Solver;
 use super::stage::Stage;
 use super::studies::Reached;
-use crate::case::{Case, Polar};
+use crate::case::Polar;
 use crate::cloud::sources::Source;
-use crate::geometry::Surface;
 use crate::observe::convergence::Convergence;
+use crate::problem::coarser::times_the_spacing;
+use crate::problem::{ProblemIn, RunError, in_stream, spacing};
 use crate::scheme::HasGas;
 use crate::system::{Instant, System};
 
 /// What the points of a polar leave to one another; a single case is one point, which nothing is kept for.
-pub(crate) struct Course<'a, S, const D: usize> {
-    /// The case at each point.
-    points: &'a [Case],
+pub(crate) struct Course<S, const D: usize> {
+    /// The problem at each point.
+    points: Vec<Arc<ProblemIn<D>>>,
     /// Angles at each Mach number.
     angles: usize,
     /// Solvers on the clouds that all points share, with the factor on their spacing.
@@ -69,16 +69,17 @@ pub(crate) struct Coarser<'a> {
     pub(crate) carry: &'a dyn Fn(&[f64]) -> Vec<f64>,
 }
 
-impl<'a, S: HasGas<D>, const D: usize> Course<'a, S, D> {
-    /// The `points` of a case, with the states that a checkpoint kept.
-    pub(crate) fn of(case: &Case, points: &'a [Case], kept: Vec<Kept>) -> Self {
-        let angles = case.polar.as_ref().map_or(1, Polar::angles);
+impl<S: HasGas<D>, const D: usize> Course<S, D> {
+    /// The points of a problem, with the states that a checkpoint kept.
+    pub(crate) fn of(problem: &ProblemIn<D>, kept: Vec<Kept>) -> Self {
+        let angles = problem.case().polar.as_ref().map_or(1, Polar::angles);
+        let points = problem.points().into_iter().map(Arc::new).collect();
         Self { points, angles, shelf: Vec::new(), kept, failure: None }
     }
 
-    /// The case at the point of a stage.
-    pub(crate) fn case(&self, stage: &Stage) -> &'a Case {
-        &self.points[stage.point.unwrap_or(0)]
+    /// The problem at the point of a stage.
+    pub(crate) fn problem(&self, stage: &Stage) -> Arc<ProblemIn<D>> {
+        Arc::clone(&self.points[stage.point.unwrap_or(0)])
     }
 
     /// States of points that are over.
@@ -137,7 +138,7 @@ impl<'a, S: HasGas<D>, const D: usize> Course<'a, S, D> {
         let on_cloud = |k: &&Kept| k.factor == stage.factor && k.state.len() == near.state.len();
         let line = |k: &&Kept| on_cloud(k) && k.point < near.point && self.in_row(stage, k);
         let before = self.kept.iter().filter(line).max_by_key(|k| k.point)?;
-        let angle = |point: usize| self.points[point].flow.alpha.0;
+        let angle = |point: usize| self.points[point].case().flow.alpha.0;
         let part = (angle(stage.point?) - angle(near.point)) / (angle(near.point) - angle(before.point));
         Some(near.state.iter().zip(&before.state).map(|(a, b)| a + part * (a - b)).collect())
     }
@@ -159,7 +160,7 @@ impl<'a, S: HasGas<D>, const D: usize> Course<'a, S, D> {
         };
         let Some(point) = stage.point else {
             if k + 1 < stages.len() {
-                let end = reached.end.as_ref().filter(|_| accuracy::asked(&self.points[0]).is_some());
+                let end = reached.end.as_ref().filter(|_| spacing::asked(self.points[0].case()).is_some());
                 self.kept = end.map(|(_, state)| kept(state)).into_iter().collect();
             }
             return;
@@ -225,10 +226,10 @@ impl<'a, S: HasGas<D>, const D: usize> Course<'a, S, D> {
     }
 
     /// The solver on the cloud of a stage, where it is on the shelf, in the free stream of its point.
-    pub(crate) fn take(&mut self, stage: &Stage, site: &Site<'_, D>) -> Result<Option<Solver<S, D>>, RunError> {
+    pub(crate) fn take(&mut self, stage: &Stage, problem: &ProblemIn<D>) -> Result<Option<Solver<S, D>>, RunError> {
         let found = self.shelf.iter().position(|(factor, _)| *factor == stage.factor && stage.cycle == 0);
         let Some((_, mut solver)) = found.map(|k| self.shelf.swap_remove(k)) else { return Ok(None) };
-        let gas = setup::in_stream(site, solver.system.gas())?;
+        let gas = in_stream(problem, solver.system.gas())?;
         solver.system.set_gas(gas);
         Ok(Some(solver))
     }
@@ -250,10 +251,11 @@ impl<'a, S: HasGas<D>, const D: usize> Course<'a, S, D> {
     }
 
     /// A point begins: what is said and measured from now on is in its free stream.
-    pub(crate) fn enter(&self, stage: &Stage, surface: Option<&Surface<D>>, log: &mut Log<'a>) {
+    pub(crate) fn enter(&self, stage: &Stage, log: &mut Log<'_>) {
         let Some(point) = stage.point else { return };
-        let case = self.case(stage);
-        log.turn_to(case, load_axes(case, surface), [point, self.points.len()]);
+        let problem = self.problem(stage);
+        let axes = load_axes(problem.case(), problem.surface());
+        log.turn_to(problem.shared_case(), axes, [point, self.points.len()]);
     }
 
     /// A stage failed: the next stage, from the start of the case, after a cloud that only gives a start, with a steady flow before any
@@ -275,7 +277,7 @@ impl<'a, S: HasGas<D>, const D: usize> Course<'a, S, D> {
             if stages.get(k + 1).is_some_and(|next| next.instances() > 1) {
                 // the finer clouds have no steady flow to begin a balance with
                 stages.truncate(k + 1);
-                stages.extend(recipe::balance_from_rest(&self.points[0], multiples));
+                stages.extend(recipe::balance_from_rest(self.points[0].case(), multiples));
             }
             return Ok(k + 1);
         }
@@ -304,7 +306,8 @@ impl<'a, S: HasGas<D>, const D: usize> Course<'a, S, D> {
             return Ok(again(k, stages, &why, log));
         }
         let stage = &stages[k];
-        let (case, gas) = (self.case(stage), GasView::of(system, frame, state));
+        let (problem, gas) = (self.problem(stage), GasView::of(system, frame, state));
+        let case = problem.case();
         let mut work = gas.fluid.work();
         let balance = momentum::around(case, &log.axes, &gas, &mut work, false);
         let axes = log.axes.axes(&gas.walls(&mut work));
@@ -330,7 +333,7 @@ impl<'a, S: HasGas<D>, const D: usize> Course<'a, S, D> {
     fn row(&self, stage: &Stage, log: &Log<'_>) -> PolarPoint {
         let (iterations, cpu_seconds) = log.record.polar.spent(log.record.iteration, log.seconds()[0]);
         let from_rest = log.record.polar.from_rest;
-        PolarPoint { iterations, cpu_seconds, from_rest, ..PolarPoint::of(self.case(stage)) }
+        PolarPoint { iterations, cpu_seconds, from_rest, ..PolarPoint::of(self.problem(stage).case()) }
     }
 
     fn tell(&self, row: PolarPoint, log: &mut Log<'_>) -> Result<(), RunError> {

@@ -4,11 +4,11 @@
 //! 276,000 (November 2026).
 use std::path::Path;
 
-use super::error::RunError;
 use super::files::FILM_FIELDS;
-use super::recipe::harmonics;
 use crate::case::{Case, Temporal};
 use crate::observe::usage::free_disk_bytes;
+use crate::problem::RunError;
+use crate::problem::numerics::harmonics;
 
 /// Bytes of each particle in a file of a field, in the plane and in space.
 const FIELD: [f64; 2] = [105.0, 172.0];

@@ -1,11 +1,12 @@
 //! What makes the loads of a finished run doubtful.
 use super::record::summary::Summary;
 use super::solids::von_mises;
-use super::{accuracy, setup};
 use crate::case::Case;
 use crate::coupling::SolidSnapshot;
 use crate::geometry::Surface;
 use crate::observe::convergence::LEAST;
+use crate::problem;
+use crate::problem::spacing;
 
 /// Part of a load that its two evaluations may differ by.
 const DISAGREEMENT: f64 = 0.05;
@@ -21,7 +22,7 @@ pub(crate) fn told<const D: usize>(
     solid: Option<&SolidSnapshot<'_, D>>,
 ) -> Vec<String> {
     let on = Case { cloud: s.cloud.clone(), ..case.clone() };
-    let rough = accuracy::asked(case).map_or_else(Vec::new, |_| setup::rough(&on, surface));
+    let rough = spacing::asked(case).map_or_else(Vec::new, |_| problem::rough(&on, surface));
     of_loads(case, s, largest).into_iter().chain(rough).chain(solid.and_then(of_solid)).collect()
 }
 

@@ -12,17 +12,17 @@ use std::path::{Path, PathBuf};
 
 use serde_json::Value;
 
-use super::at_end::{AtEnd, Outcome};
-use super::error::RunError;
 use super::folder;
 use super::monitor::{Monitor, Quiet};
-use super::one_cloud::{COARSER, coarser};
+use super::outcome::Outcome;
 use super::record::Log;
 use super::record::summary::Summary;
 use super::resumed::continued;
 use super::session::Session;
 use crate::case::{Accuracy, Case, HarmonicCount, LoadErrors, RungeKutta, Temporal};
 use crate::observe::error_bars::{ErrorBars, Measured, NOT_PERIODIC, OtherRun, Part, Window};
+use crate::problem::RunError;
+use crate::problem::coarser::{COARSER, coarser};
 
 /// Folder of the further runs in that of a run.
 const FOLDER: &str = "coarser";
@@ -51,7 +51,7 @@ pub fn solve(session: &mut Session, monitor: &mut dyn Monitor) -> Result<Outcome
     let (input, out) = session.places();
     let place = Place { input, out };
     let mut bars = |case: &Case, summary: &mut Summary, log: &mut Log<'_>| place.find(case, summary, log);
-    session.solve_and(monitor, AtEnd { then: None, bars: Some(&mut bars) })
+    session.solve_with(Some(&mut bars), monitor)
 }
 
 /// Where the files of a case lie, and the folder of its run where it has one.

@@ -9,12 +9,11 @@ use std::path::Path;
 mod clearance;
 mod coarser;
 mod damping;
+mod files;
 mod held;
 mod kept;
 mod limit_cycles;
 mod marched;
-mod record;
-mod rows;
 mod scales;
 mod search;
 mod shapes;
@@ -25,14 +24,6 @@ mod tables;
 mod trim;
 mod wall_motion;
 
-pub use held::Mark;
-pub use record::{Boundary, FlutterAt, LimitCycle, MarchedCycle, Trim};
-pub(super) use rows::or_infinite;
-pub use rows::{Bars, Clearance, Doubt, FlutterRow, MotionRow};
-pub use scales::CaseReference;
-pub use shapes::{NaturalMode, Share};
-pub use state_space::StateSpaceAt;
-
 use self::held::Held;
 use self::kept::Kept;
 use self::limit_cycles::Seek;
@@ -40,24 +31,25 @@ use self::scales::Scales;
 use self::search::Search;
 use self::skin::Skin;
 use self::stored::Stored;
-use super::accuracy::{self, Forces};
-use super::at_end::Outcome;
 use super::cost;
-use super::error::RunError;
+use super::flow::{self, Flow};
 use super::folder::{self, Places};
 use super::monitor::{Monitor, Quiet, Within};
-use super::one_cloud::{self, BETWEEN, COARSER, on_one_cloud, times_the_spacing};
-use super::record::Log;
-use super::session::Session;
-use super::solids::{told_of_own_modes, with_own_modes};
-use super::studies::ForceSource;
+use super::refusals;
+use super::solution::Solution;
 use super::time_left::Portion;
-use super::{refusals, setup};
-use crate::case::{Case, Flutter as Plan, GasResponse, LimitCycles, Matching, StreamRatio};
+use crate::case::{Case, Flutter as Plan, GasResponse, LimitCycles, Matching};
 use crate::geometry::dimension;
 use crate::physics::atmosphere;
+use crate::problem::coarser::{BETWEEN, COARSER, times_the_spacing};
+use crate::problem::solids::told_of_own_modes;
+use crate::problem::{Problem, RunError, StreamRatio, spacing, supported};
+use crate::record::flutter::remedy;
+pub use crate::record::flutter::{
+    Bars, Boundary, CaseReference, Clearance, Doubt, FlutterAt, FlutterRow, LimitCycle, MarchedCycle, Mark, MotionRow,
+    NaturalMode, Share, StateSpaceAt, Trim,
+};
 use crate::structure::limit_cycle::Borne;
-use record::remedy;
 
 /// Parts by which the gas of a case may differ from the air of the standard atmosphere.
 const AIR: f64 = 0.005;
@@ -101,20 +93,15 @@ pub fn resume(out: &Path, monitor: &mut dyn Monitor) -> Result<Option<Boundary>,
     flutter(&case, &Places { input, out: out.to_path_buf() }, monitor)
 }
 
-/// Number of coordinates of the structures of a case whose files lie in `input`.
-pub(super) fn coordinates(case: &Case, input: &Path) -> Result<usize, RunError> {
-    Ok(Held::of(case, input)?.names.len())
-}
-
 /// Refuses a boundary of which it is known before any flow that it cannot be sought.
 pub(super) fn rehearse(case: &Case, input: &Path) -> Result<(), RunError> {
     let plan = planned(case)?;
     // the structure is the same at all Mach numbers
     let Some(mach) = plan.mach.first() else { return Ok(()) };
-    let own = on_one_cloud(case.flutter_case(*mach), input, Forces::Boundary)?;
-    let held = Held::of(&own, input)?;
+    let own = Problem::of_case(case, input)?.about_steady_flow(*mach)?;
+    let held = Held::of(&own);
     case.lco.as_ref().map_or(Ok(0), |lco| limit_cycles::coordinate(lco, &held.names))?;
-    refusals::rehearse(&own, input, !plan.trim)
+    refusals::rehearse(&own, !plan.trim)
 }
 
 /// The table `[flutter]` with all its Mach numbers.
@@ -131,7 +118,7 @@ fn planned(case: &Case) -> Result<Plan, RunError> {
     let cycles = case.lco.as_ref().map(|lco| lco.mach.unwrap_or(case.flow.reference().mach));
     plan.mach.extend(cycles.filter(|mach| !plan.mach.contains(mach)));
     refused(case, &plan)?;
-    setup::supported(case)?;
+    supported(case)?;
     Ok(plan)
 }
 
@@ -143,24 +130,25 @@ fn sought(
     monitor: &mut dyn Monitor,
 ) -> Result<Option<Boundary>, RunError> {
     let plan = planned(case)?;
-    let case = &with_own_modes(case, input)?;
+    let problem = &Problem::of_case(case, input)?;
+    let case = problem.given();
     told_of_own_modes(case).iter().for_each(|told| monitor.note(told));
     forces.map_or(Ok(()), |_| refused_with_forces(case, &plan))?;
     let stored = forces.map(Stored::read).transpose()?;
     let _held = out.map(|out| folder::create_once(case, input, out)).transpose()?;
     let mut kept = Kept::of(case, input, out)?;
     kept.write(out)?;
-    let mut all = Boundary::new(&case.title);
+    let (mut all, mut drawn) = (Boundary::new(&case.title), None);
     let all_machs = vec![1.0; plan.mach.len()];
     for (k, mach) in plan.mach.clone().into_iter().enumerate() {
         let monitor = &mut Within { outer: Portion::of(k, &all_machs), monitor: &mut *monitor };
         let found = match (&stored, kept.at(mach)) {
-            (Some(stored), _) => Some((of_stored(case, &plan, mach, (stored, input))?, true)),
+            (Some(stored), _) => Some((of_stored(problem, &plan, mach, stored)?, true)),
             (None, Some(before)) => {
                 monitor.note(&format!("Mach {mach} was finished before"));
                 Some((before, true))
             }
-            (None, None) => at_mach(case, &plan, mach, (input, case.output.report && out.is_some()), monitor)?,
+            (None, None) => at_mach(problem, &plan, (mach, case.output.report && out.is_some()), monitor)?,
         };
         let Some((mut found, whole)) = found else { return Ok(None) };
         found.read = forces.map(|f| f.display().to_string());
@@ -170,12 +158,12 @@ fn sought(
             kept.add(&found);
             kept.write(out)?;
         }
-        if case.output.report && out.is_some() && all.skin.is_none() {
-            all.skin = Some(skin(case, mach, input)?);
+        if case.output.report && out.is_some() && drawn.is_none() {
+            drawn = Some(skin(problem, mach)?);
         }
         all.lco.append(&mut found.cycles);
         all.flutter.push(found);
-        out.map_or(Ok(()), |out| all.write(out))?;
+        out.map_or(Ok(()), |out| files::write(&all, drawn.as_ref(), out))?;
         if !whole {
             return Ok(None);
         }
@@ -188,11 +176,11 @@ fn sought(
 }
 
 /// What draws motions of the structures.
-fn skin(case: &Case, mach: f64, input: &Path) -> Result<Skin, RunError> {
-    let own = case.flutter_case(mach);
-    let held = Held::of(&own, input)?;
-    let b = Scales::of(&own, held.chord, Matching::None).semichord;
-    Skin::of(&own, input, &held.units(b))
+fn skin(problem: &Problem, mach: f64) -> Result<Skin, RunError> {
+    let own = problem.about_steady_flow(mach)?;
+    let held = Held::of(&own);
+    let b = Scales::of(own.case(), held.chord, Matching::None).semichord;
+    Ok(Skin::of(&own, &held.units(b)))
 }
 
 /// What forces that are read do not serve.
@@ -277,24 +265,24 @@ fn goes_with_speed(case: &Case) -> bool {
 /// The boundary at one Mach number, with the motions of the walls where they are `drawn`, and false where the monitor said stop in the
 /// march after it; `None` where it did before.
 fn at_mach(
-    case: &Case,
+    root: &Problem,
     plan: &Plan,
-    mach: f64,
-    (input, drawn): (&Path, bool),
+    (mach, drawn): (f64, bool),
     monitor: &mut dyn Monitor,
 ) -> Result<Option<(FlutterAt, bool)>, RunError> {
-    let own = on_one_cloud(case.flutter_case(mach), input, Forces::Boundary)?;
-    let held = Held::of(&own, input)?;
-    let scales = Scales::of(&own, held.chord, plan.matching);
-    let place = Place { own: &own, held: &held, scales: &scales, plan, lco: cycles_at(case, mach), input, drawn };
-    let marches = cycles_at(case, mach).is_some_and(|lco| lco.march);
+    let own = root.about_steady_flow(mach)?;
+    let held = Held::of(&own);
+    let scales = Scales::of(own.case(), held.chord, plan.matching);
+    let lco = cycles_at(root.given(), mach);
+    let place = Place { problem: &own, held: &held, scales: &scales, plan, lco, drawn };
+    let marches = lco.is_some_and(|lco| lco.march);
     let part = |k: usize, shocks: bool| Portion::of(k, &place.parts(shocks, marches));
     let first = &mut Within { outer: part(0, false), monitor: &mut *monitor };
     let at = match plan.trim {
         true => {
             let boundary =
                 |stream: StreamRatio, last: bool, monitor: &mut dyn Monitor| place.boundary((stream, last), monitor);
-            trim::trimmed(&scales, (plan, place.lco.is_some()), &boundary, first)?
+            trim::trimmed(&scales, (plan, lco.is_some()), &boundary, first)?
         }
         false => place.boundary((StreamRatio::SAME, true), first)?,
     };
@@ -303,9 +291,8 @@ fn at_mach(
         return Ok(None);
     }
     let outer = part(3, at.supersonic);
-    let mut at = placed(at, (&own, mach), held, (&scales, plan));
-    let whole =
-        !marches || at.cycles.is_empty() || marched::march(case, &mut at, input, &mut Within { outer, monitor })?;
+    let mut at = placed(at, (own.case(), mach), held, (&scales, plan));
+    let whole = !marches || at.cycles.is_empty() || marched::march(root, &mut at, &mut Within { outer, monitor })?;
     if !whole {
         at.warn(("told to stop while the limit cycle was marched: all else is whole".into(), remedy::CYCLES));
     }
@@ -324,12 +311,12 @@ enum Asked {
 
 /// What is sought at a Mach number, and of what.
 struct Place<'a> {
-    own: &'a Case,
+    /// The steady flow at that Mach number.
+    problem: &'a Problem,
     held: &'a Held,
     scales: &'a Scales,
     plan: &'a Plan,
     lco: Option<&'a LimitCycles>,
-    input: &'a Path,
     /// True where motions of the walls are drawn, which are cut out of the cloud for that.
     drawn: bool,
 }
@@ -339,7 +326,7 @@ impl Place<'_> {
     /// another.
     fn parts(&self, shocks: bool, marches: bool) -> [f64; 4] {
         let asked = |ratio: f64, asked: bool| match asked && self.plan.cloud_error {
-            true => accuracy::alike(ratio, dimension(self.own).into()),
+            true => spacing::alike(ratio, dimension(self.problem.case()).into()),
             false => 0.0,
         };
         [1.0, asked(COARSER, true), asked(BETWEEN, shocks), f64::from(u8::from(marches))]
@@ -351,34 +338,42 @@ impl Place<'_> {
         (stream, cycles): (StreamRatio, bool),
         monitor: &mut dyn Monitor,
     ) -> Result<Option<FlutterAt>, RunError> {
-        let mut session = Session::open(&self.own.in_stream(stream), self.input)?;
-        let share = cost::share_of_steady(dimension(self.own).into(), self.held.names.len() * self.plan.expected());
-        let mut found = None;
-        let mut then = |source: &mut dyn ForceSource, log: &mut Log<'_>| {
-            let mut search = Search::new(self.held, self.scales, self.plan, Vec::new(), 0.0);
-            let Some(mut at) = search.run((source, stream), log) else { return Ok(()) };
-            if self.drawn {
-                search.show(&mut at, source);
-            }
-            (at.borne, at.supersonic) = (source.borne(), source.is_supersonic());
-            if let Some(lco) = self.lco.filter(|_| cycles) {
-                let springs = search::springs_of_the_case(source.springs(), stream);
-                let borne = self.plan.trim.then(|| Borne { forces: at.borne.clone(), pressure: stream.pressure });
-                at.add_cycles(Seek::new(lco, &mut search, (springs, borne))?.run(Some((source, log))));
-                if log.stopped() {
-                    return Ok(());
-                }
-            }
-            found = Some(at);
-            Ok(())
-        };
-        let outcome = session.solve_then(monitor, (share, &mut then))?;
-        let (Outcome::Finished(summary), Some(mut at)) = (outcome, found) else { return Ok(None) };
+        let problem = self.problem.in_stream(stream)?;
+        let columns = self.held.names.len() * self.plan.expected();
+        let share = cost::share_of_steady(dimension(problem.case()).into(), columns);
+        let Some(mut flow) = flow::steady(&problem, share, monitor)? else { return Ok(None) };
+        let Some(mut at) = self.about(&mut *flow, (stream, cycles))? else { return Ok(None) };
+        let Ok(Solution { summary, .. }) = flow.conclude(None)? else { return Ok(None) };
         at.steady = [summary.loads.cl, summary.loads.cd, summary.loads.cm];
         at.orders = summary.residual_drop.unwrap_or(0.0);
         (at.particles, at.cpu_seconds) = (summary.particles, summary.cpu_seconds);
         if !summary.succeeded() {
             at.warn(("the steady flow did not converge: forces about it are doubtful".into(), remedy::STEADY));
+        }
+        Ok(Some(at))
+    }
+
+    /// The same about a steady flow that is known.
+    fn about(
+        &self,
+        flow: &mut dyn Flow<'_>,
+        (stream, cycles): (StreamRatio, bool),
+    ) -> Result<Option<FlutterAt>, RunError> {
+        let (mut forces, log) = flow.forces()?;
+        let forces = &mut *forces;
+        let mut search = Search::new(self.held, self.scales, self.plan, Vec::new(), 0.0);
+        let Some(mut at) = search.run((&mut *forces, stream), log) else { return Ok(None) };
+        if self.drawn {
+            search.show(&mut at, forces);
+        }
+        (at.borne, at.supersonic) = (forces.borne(), forces.is_supersonic());
+        if let Some(lco) = self.lco.filter(|_| cycles) {
+            let springs = search::springs_of_the_case(forces.springs(), stream);
+            let borne = self.plan.trim.then(|| Borne { forces: at.borne.clone(), pressure: stream.pressure });
+            at.add_cycles(Seek::new(lco, &mut search, (springs, borne))?.run(Some((&mut *forces, &mut *log))));
+            if log.stopped() {
+                return Ok(None);
+            }
         }
         Ok(Some(at))
     }
@@ -411,32 +406,38 @@ impl Place<'_> {
 
     /// The boundary in the stream of `at` on a cloud with `ratio` times the spacing.
     fn on_coarser(&self, at: &FlutterAt, ratio: f64, monitor: &mut dyn Monitor) -> Result<Asked, RunError> {
-        let Some(own) = one_cloud::coarser(self.own, ratio) else { return Ok(Asked::Silent) };
+        let silent = |why: RunError, monitor: &mut dyn Monitor| {
+            monitor.note(&format!("the coarser cloud tells nothing: {why}"));
+            Ok(Asked::Silent)
+        };
+        let own = match self.problem.on_spacing(ratio) {
+            Ok(Some(own)) => own,
+            Ok(None) => return Ok(Asked::Silent),
+            Err(why) => return silent(why, monitor),
+        };
         let stream = at.trim.as_ref().map_or(StreamRatio::SAME, |trim| StreamRatio {
             pressure: trim.dynamic_pressure / self.scales.reference.dynamic_pressure(),
             temperature: trim.speed_ratio * trim.speed_ratio,
         });
         monitor.note(&format!("the same on a cloud with {}", times_the_spacing(ratio)));
         let plan = Plan { state_space: false, ..self.plan.clone() };
-        let place = Place { own: &own, plan: &plan, drawn: false, ..*self };
+        let place = Place { problem: &own, plan: &plan, drawn: false, ..*self };
         // what that cloud is too coarse for is told by the difference
-        Ok(match place.boundary((stream, false), &mut Quiet { monitor }) {
-            Ok(Some(coarse)) => Asked::Told(Box::new(coarse)),
-            Ok(None) => Asked::Stopped,
+        match place.boundary((stream, false), &mut Quiet { monitor }) {
+            Ok(Some(coarse)) => Ok(Asked::Told(Box::new(coarse))),
+            Ok(None) => Ok(Asked::Stopped),
             // a cloud that is too coarse for the body tells nothing of the one that is not
-            Err(problem) => {
-                monitor.note(&format!("the coarser cloud tells nothing: {problem}"));
-                Asked::Silent
-            }
-        })
+            Err(why) => silent(why, monitor),
+        }
     }
 }
 
 /// The same from forces that are known.
-fn of_stored(case: &Case, plan: &Plan, mach: f64, (stored, input): (&Stored, &Path)) -> Result<FlutterAt, RunError> {
-    let own = case.flutter_case(mach);
-    let held = Held::of(&own, input)?;
-    let scales = Scales::of(&own, held.chord, plan.matching);
+fn of_stored(root: &Problem, plan: &Plan, mach: f64, stored: &Stored) -> Result<FlutterAt, RunError> {
+    let own = root.about_steady_flow(mach)?;
+    let (held, case) = (Held::of(&own), root.given());
+    let own = own.case();
+    let scales = Scales::of(own, held.chord, plan.matching);
     let samples = stored.samples(mach, own.flow.alpha.0.to_degrees(), &held)?;
     let mut search = Search::new(&held, &scales, plan, samples.all, samples.residual);
     let mut at = search.again();
@@ -447,7 +448,7 @@ fn of_stored(case: &Case, plan: &Plan, mach: f64, (stored, input): (&Stored, &Pa
             at.warn((what.into(), remedy::CYCLES));
         }
     }
-    Ok(placed(at, (&own, mach), held, (&scales, plan)))
+    Ok(placed(at, (own, mach), held, (&scales, plan)))
 }
 
 /// The limit cycles that are sought at a Mach number of a case.

@@ -3,13 +3,14 @@ use std::fs::{self, File, TryLockError};
 use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 
-use super::error::RunError;
 use super::record::saved;
-use crate::case::{Case, Cloud, Compare, open_regular, read, read_regular, text_of, write, write_cloud};
+use crate::case::{Case, Cloud, Compare, open_regular, read, read_regular, write, write_cloud};
 use crate::geometry::dimension;
 use crate::observe::checkpoint;
 use crate::observe::table::UNFINISHED;
 use crate::observe::write_atomic;
+use crate::problem::RunError;
+use crate::problem::files::plain;
 use crate::report::check_reference;
 
 /// Where the folder of the case file is noted.
@@ -336,16 +337,6 @@ pub(crate) fn check_compared(case: &Case, input: &Path) -> Result<(), RunError> 
             "a reference is a table with the columns {columns} in its first line, of pressure along the chord"
         ),
     })
-}
-
-/// Text of a file that a case or a run refers to.
-pub(crate) fn text(folder: &Path, name: &str) -> std::io::Result<String> {
-    plain(&folder.join(name))
-}
-
-/// Text of a file, however it is encoded.
-fn plain(path: &Path) -> std::io::Result<String> {
-    text_of(&read_regular(path)?).map_err(|e| std::io::Error::new(ErrorKind::InvalidData, e))
 }
 
 #[cfg(test)]

@@ -1,7 +1,6 @@
 //! What a run has found when it is over: loads, ledgers, errors, the wall.
 use super::look::friction::{Separation, add_friction, separations, wall_friction};
 use super::look::{WakePlane, WallSnapshot, hinge_moments, pressure_load, tip_vortex, totals};
-use super::recipe;
 use super::record::family;
 use super::record::summary::{Clock, FILES, FreeStream, Ledger, Reclouding, Summary};
 use super::record::{Log, Record};
@@ -15,6 +14,7 @@ use crate::observe::loads::{Balance, Coefficients, Load, LoadAxes, together};
 use crate::observe::strips::{RootLoads, Strips};
 use crate::observe::usage::peak_bytes;
 use crate::physics::n_variables;
+use crate::problem::numerics;
 use crate::scheme::{Fluid, View};
 use crate::system::System;
 use crate::verify::truth::FieldTruth;
@@ -127,7 +127,7 @@ impl<const D: usize> Found<'_, D> {
         let balance = self.balance.unwrap_or_default();
         let through = self.axes.coefficients(&balance.load);
         let marches = case.is_unsteady() && record.balance.is_none();
-        let ledger = match recipe::balance(case) {
+        let ledger = match numerics::balance(case) {
             Some(_) => None,
             None if marches => drift(&self.view, state, &record.start_totals),
             None => Some(self.steady_ledger(&balance, &loads, &through)),

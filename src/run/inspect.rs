@@ -4,26 +4,24 @@ use std::time;
 
 use serde::Serialize;
 
-use super::accuracy::{self, Forces};
+use super::about;
+use super::accuracy;
 use super::cost::{Cost, OF_COLUMN, Sized};
-use super::error::RunError;
 use super::files::{Scene, Target, pixels, write_cloud};
-use super::flutter;
 use super::folder;
 use super::look::{Held, Mesh, Rim, load_axes};
 use super::pilot;
-use super::recipe;
-use super::setup::{self, Site, Solver, check_motion};
+use super::setup::{self, Solver};
 use super::solids;
 use super::stage::Stage;
 use super::understood::{Aeroelastic, Understood};
 use crate::case::{Case, GafMethod};
 use crate::cloud::layout::{capped, count};
 use crate::cloud::{Cloud, CloudSpec, Diagnosis};
-use crate::geometry::{Surface, dimension};
-use crate::observe::About;
 use crate::observe::table::write_json;
 use crate::observe::vtk::{Column, write_cells};
+use crate::problem::solids::{told_of_own_modes, with_gas};
+use crate::problem::{Problem, ProblemIn, Remark, RunError, check_motion, numerics, rough, spacing};
 use crate::scheme::{Fluid, Frame, View};
 use crate::system::{Instant, System};
 
@@ -126,29 +124,32 @@ impl SpacingRange {
 /// Builds the cloud of a case, whose file names refer to the folder `input`, and judges it; writes it into the folder `out` if
 /// one is given.
 pub fn inspect(case: &Case, input: &Path, out: Option<&Path>) -> Result<CloudReport, RunError> {
-    solids::with_gas(case)?;
-    let case = &solids::with_own_modes(case, input)?;
-    match dimension(case) {
-        2 => look::<2>(case, input, out),
-        _ => look::<3>(case, input, out),
+    let began = time::Instant::now();
+    with_gas(case)?;
+    match Problem::of_case(case, input)? {
+        Problem::Plane(problem) => look(&problem, began, out),
+        Problem::Space(problem) => look(&problem, began, out),
     }
 }
 
-fn look<const D: usize>(case: &Case, input: &Path, out: Option<&Path>) -> Result<CloudReport, RunError> {
-    let began = time::Instant::now();
-    let (surface, mut notes) = setup::surface::<D>(case, input)?;
-    let filled = accuracy::with_cloud(case, surface.as_ref());
-    let given = case;
-    let case = filled.as_ref();
-    let motions = setup::motions(case, input, surface.as_ref())?;
+fn look<const D: usize>(
+    problem: &ProblemIn<D>,
+    began: time::Instant,
+    out: Option<&Path>,
+) -> Result<CloudReport, RunError> {
+    let (case, surface, input) = (problem.case(), problem.surface(), problem.input());
     folder::check_compared(case, input)?;
-    let mut warnings = setup::sane(case, surface.as_ref(), &motions)?;
-    let told = setup::judged_modes(case, input, surface.as_ref())?;
-    notes.extend(told.notes);
-    warnings.extend(told.warnings);
-    let site = Site { case, surface: surface.as_ref(), motions: &motions };
-    let seen = if out.is_none() { sample_cloud(&site) } else { SampleCloud::PLAIN };
-    let solver = setup::solver(&site, &Stage { factor: seen.factor, ..Stage::PLAIN }, &[], None)?;
+    let (mut notes, mut warnings) = (Vec::new(), Vec::new());
+    for remark in problem.remarks().iter().cloned().chain(problem.remarks_on_gaf_modes()?) {
+        match remark {
+            Remark::Note(text) => notes.push(text),
+            Remark::Warning(text) => warnings.push(text),
+        }
+    }
+    let alone = &problem.without_structures();
+    let motions = alone.motions();
+    let seen = if out.is_none() { sample_cloud(alone) } else { SampleCloud::PLAIN };
+    let solver = setup::solver(alone, &Stage { factor: seen.factor, ..Stage::PLAIN }, &[], None)?;
     let seconds = began.elapsed().as_secs_f64();
     let (fluid, u) = (&solver.system, &solver.system.start());
     let mut work = fluid.work();
@@ -163,27 +164,26 @@ fn look<const D: usize>(case: &Case, input: &Path, out: Option<&Path>) -> Result
     let n_fluid = (cloud.n_fluid as f64 * seen.more).round() as usize;
     let n_wall = (cloud.interface.len() as f64 * seen.factor.powi(D as i32 - 1)).round() as usize;
     let particles = n_fluid + n_wall + cloud.outer.len();
-    let told = if seen.factor == 1.0 { [cloud.notes.clone(), cloud.early_ends()].concat() } else { seen.told(&site) };
+    let told = if seen.factor == 1.0 { [cloud.notes.clone(), cloud.early_ends()].concat() } else { seen.told(alone) };
     notes.extend(told.into_iter().chain(accuracy::too_few(case, particles)));
-    warnings.extend(check_motion(case, cloud, &motions)?);
+    warnings.extend(check_motion(case, cloud, motions)?);
     let structure = solids::inspect_in_gas(case, input)?;
-    notes.extend(solids::told_of_own_modes(case));
+    notes.extend(told_of_own_modes(case));
     warnings.extend(structure.iter().flat_map(|s| s.warnings.iter().cloned()));
-    recipe::marching(case, motions.period(), D)?;
-    let axes = (!cloud.interface.is_empty())
-        .then(|| load_axes(case, surface.as_ref()).axes(&fluid.view(&frame, u, &mut work)));
-    let aeroelastic = Aeroelastic::of(case, input, surface.as_ref())?;
+    numerics::marching(case, motions.period(), D)?;
+    let axes = (!cloud.interface.is_empty()).then(|| load_axes(case, surface).axes(&fluid.view(&frame, u, &mut work)));
+    let aeroelastic = Aeroelastic::of(problem);
     let period = motions.period();
-    let pilot = pilot::fly(case, input, surface.as_ref(), n_fluid, period);
+    let pilot = pilot::fly(case, input, surface, n_fluid, period);
     let evaluation = evaluation * seen.more;
-    let pixels = pixels(surface.as_ref(), &cloud.tree.bounds());
-    let sizes = &accuracy::sizes(case, surface.as_ref(), particles);
-    let family = accuracy::asked(case).map(|asked| accuracy::family(case, &asked, sizes, D)).unwrap_or_default();
-    let finest = family.last().map(|stage| accuracy::scaled(case, stage.factor));
-    warnings.extend(finest.iter().flat_map(|on| setup::rough(on, surface.as_ref())));
+    let pixels = pixels(surface, &cloud.tree.bounds());
+    let sizes = &spacing::sizes(case, surface, particles);
+    let family = spacing::asked(case).map(|asked| accuracy::family(case, &asked, sizes, D)).unwrap_or_default();
+    let finest = family.last().map(|stage| spacing::scaled(case, stage.factor));
+    warnings.extend(finest.iter().flat_map(|on| rough(on, surface)));
     let sized = Sized { case, particles, sizes, dimension: D, period, pixels, evaluation, pilot };
     let report = CloudReport {
-        understood: Understood::of(case, surface.as_ref(), &motions, axes.as_ref(), aeroelastic),
+        understood: Understood::of(case, surface, motions, axes.as_ref(), aeroelastic),
         particles,
         fluid: n_fluid,
         interface: n_wall,
@@ -195,15 +195,15 @@ fn look<const D: usize>(case: &Case, input: &Path, out: Option<&Path>) -> Result
         cost: sized.cost(fastest),
         least: sized.least(),
         structure,
-        gaf: cost_of_gaf(&sized, (given, surface.as_ref()), axes.as_ref().map(|a| a.chord)),
-        flutter: cost_of_flutter(&sized, (given, surface.as_ref()), input)?,
+        gaf: cost_of_gaf(&sized, problem, axes.as_ref().map(|a| a.chord))?,
+        flutter: cost_of_flutter(&sized, problem)?,
         seen_on: (seen.factor != 1.0).then_some(seen.factor),
         notes,
         warnings,
     };
     if let Some(out) = out {
         let _held = folder::create_once(case, input, out)?;
-        write(&Target { case, out }, &solver, &mut work, surface.as_ref())?;
+        write(&Target { case, out }, &solver, &mut work, surface)?;
     }
     Ok(report)
 }
@@ -221,25 +221,26 @@ impl SampleCloud {
     const PLAIN: Self = Self { factor: 1.0, more: 1.0 };
 
     /// What is told of the cloud of the case where another one is looked at.
-    fn told<const D: usize>(&self, site: &Site<'_, D>) -> Vec<String> {
-        site.surface.and_then(|surface| capped(&CloudSpec::of_case(site.case), surface)).into_iter().collect()
+    fn told<const D: usize>(&self, problem: &ProblemIn<D>) -> Vec<String> {
+        problem.surface().and_then(|surface| capped(&CloudSpec::of_case(problem.case()), surface)).into_iter().collect()
     }
 }
 
 /// The cloud of the case, or in space a coarser one of its family, where that of the case has many particles and moves nothing: its
 /// particles are counted on its background, which is a small part of the cost of the cloud.
-fn sample_cloud<const D: usize>(site: &Site<'_, D>) -> SampleCloud {
+fn sample_cloud<const D: usize>(problem: &ProblemIn<D>) -> SampleCloud {
     let cells = |factor: f64| {
-        let cells = count(&CloudSpec::<D>::of_case(&accuracy::scaled(site.case, factor)), site.surface, &[]).ok()?;
+        let cells =
+            count(&CloudSpec::<D>::of_case(&spacing::scaled(problem.case(), factor)), problem.surface(), &[]).ok()?;
         Some(cells as f64)
     };
-    let case = site.case;
+    let case = problem.case();
     let moves = case.motion.is_some() || case.bodies.iter().any(|b| b.motion.is_some() || b.solid.is_some());
     if D == 2 || case.bodies.is_empty() || case.is_unsteady() || moves {
         return SampleCloud::PLAIN;
     }
     let Some(own) = cells(1.0).filter(|own| *own > QUICK) else { return SampleCloud::PLAIN };
-    let fits = |factor: &f64| recipe::divides(case, *factor);
+    let fits = |factor: &f64| numerics::divides(case, *factor);
     let all = COARSER.into_iter().filter(fits).filter_map(|factor| Some((factor, cells(factor)?)));
     let all: Vec<(f64, f64)> = all.collect();
     let quick = all.iter().find(|(_, n)| *n <= QUICK).or(all.last());
@@ -266,14 +267,14 @@ fn seconds_of_evaluation<const D: usize>(
 /// mode and frequency.
 fn cost_of_gaf<const D: usize>(
     own: &Sized<'_>,
-    (given, surface): (&Case, Option<&Surface<D>>),
+    problem: &ProblemIn<D>,
     chord: Option<f64>,
-) -> Option<Cost> {
-    let plan = own.case.gaf.as_ref()?;
+) -> Result<Option<Cost>, RunError> {
+    let Some(plan) = own.case.gaf.as_ref() else { return Ok(None) };
     if plan.method == GafMethod::Linear {
-        let one = accuracy::on_one_cloud(given.gaf_steady_case(plan), surface, Forces::Table);
+        let one = problem.about_steady_flow_of_gaf(plan)?;
         let columns = plan.reduced_frequencies.len() * plan.all_modes().count();
-        return Some(of_small_motions(own, (&one, surface), (columns, plan.cloud_error)));
+        return Ok(Some(of_small_motions(own, &one, (columns, plan.cloud_error))));
     }
     let mut all = Cost { bytes: 0.0, seconds: 0.0, disk: 0.0 };
     for &k in &plan.reduced_frequencies {
@@ -286,20 +287,17 @@ fn cost_of_gaf<const D: usize>(
             all = Cost { bytes: all.bytes.max(one.bytes), seconds, disk: all.disk.max(one.disk) };
         }
     }
-    Some(all)
+    Ok(Some(all))
 }
 
 /// What a flutter boundary takes, where the case asks for one: at each Mach number a steady flow and linear systems about it.
-fn cost_of_flutter<const D: usize>(
-    own: &Sized<'_>,
-    (given, surface): (&Case, Option<&Surface<D>>),
-    input: &Path,
-) -> Result<Option<Cost>, RunError> {
-    let Some(plan) = given.flutter.as_ref() else { return Ok(None) };
-    let mach = plan.mach.first().copied().unwrap_or(given.flow.reference().mach);
-    let one = accuracy::on_one_cloud(given.flutter_case(mach), surface, Forces::Boundary);
-    let columns = plan.expected() * flutter::coordinates(&one, input)?;
-    let each = of_small_motions(own, (&one, surface), (columns, plan.cloud_error));
+fn cost_of_flutter<const D: usize>(own: &Sized<'_>, problem: &ProblemIn<D>) -> Result<Option<Cost>, RunError> {
+    let Some(plan) = problem.given().flutter.as_ref() else { return Ok(None) };
+    let mach = plan.mach.first().copied().unwrap_or(problem.reference().mach);
+    let one = problem.about_steady_flow(mach)?;
+    let coordinates: usize = one.structures().iter().map(|body| body.structure.len()).sum();
+    let columns = plan.expected() * coordinates;
+    let each = of_small_motions(own, &one, (columns, plan.cloud_error));
     let rounds = plan.mach.len().max(1) as f64 * if plan.trim { TRIMS } else { 1.0 };
     Ok(Some(Cost { seconds: rounds * each.seconds, ..each }))
 }
@@ -308,16 +306,17 @@ fn cost_of_flutter<const D: usize>(
 /// coarser cloud where that is asked for an error.
 fn of_small_motions<const D: usize>(
     own: &Sized<'_>,
-    (one, surface): (&Case, Option<&Surface<D>>),
+    problem: &ProblemIn<D>,
     (columns, cloud_error): (usize, bool),
 ) -> Cost {
+    let (one, surface) = (problem.given(), problem.surface());
     let cells = |case: &Case| count(&CloudSpec::<D>::of_case(case), surface, &[]).ok();
     let more = cells(one).zip(cells(own.case)).map_or(1.0, |(one, own)| one as f64 / own as f64);
     let particles = (own.particles as f64 * more).round() as usize;
-    let (evaluation, sizes) = (own.evaluation * more, accuracy::sizes(one, surface, particles));
+    let (evaluation, sizes) = (own.evaluation * more, spacing::sizes(one, surface, particles));
     let steady = Sized { case: one, particles, sizes: &sizes, period: None, evaluation, ..*own }.cost(|| 0.0);
     let all = SETTLED * steady.seconds + columns as f64 * OF_COLUMN[D - 2] * evaluation;
-    Cost { seconds: all * if cloud_error { 1.0 + accuracy::alike(2.0, D) } else { 1.0 }, ..steady }
+    Cost { seconds: all * if cloud_error { 1.0 + spacing::alike(2.0, D) } else { 1.0 }, ..steady }
 }
 
 fn write<const D: usize>(
@@ -339,7 +338,7 @@ fn write<const D: usize>(
     let told = [("spacing", &cloud.spacing[..n]), ("volume", &cloud.volume[..n]), ("condition", &condition)];
     let told = told.map(|(name, values)| (name, rim.with_values(name, 1, held.rows(1, values))));
     let columns = told.each_ref().map(|(name, values)| Column { name, components: 1, values });
-    let about = About::gas(to.case, "spacing", None);
+    let about = about::gas(to.case, "spacing", None);
     write_cells(&to.out.join("cloud.vtu"), &about, &points, Mesh::of(cloud, &held, &rim).cells(), &columns)?;
     write_json(&to.out.join("doctor.json"), &Diagnosis::of(cloud, fluid.discretisation.walls.n_linear))?;
     write_cloud(&Scene { to: *to, view: View::new(fluid, &frame, work), surface, chord: 1.0, vortex: None })

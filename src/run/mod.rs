@@ -10,16 +10,16 @@
 //! `solids` (structures of particles alone),
 //! `course` (the way through the stages, and what many flows on the same clouds leave to one another), `session`; on top of it `error_bars` (further runs), [`gaf`] and [`verify`], and `refusals` (what keeps a case
 //! from being computed).
+mod about;
 mod accuracy;
-mod at_end;
 mod cloud_table;
 mod cost;
 mod course;
 mod disk;
 mod doubts;
-mod error;
 mod error_bars;
 mod files;
+mod flow;
 pub mod flutter;
 mod folder;
 mod found;
@@ -28,7 +28,7 @@ mod inspect;
 mod look;
 mod measure;
 mod monitor;
-mod one_cloud;
+mod outcome;
 mod pilot;
 mod recipe;
 mod record;
@@ -38,8 +38,11 @@ mod session;
 mod setup;
 mod shape;
 mod solids;
+mod solution;
 mod stage;
 mod studies;
+#[cfg(test)]
+mod tests;
 mod time_left;
 mod understood;
 pub mod verify;
@@ -50,12 +53,13 @@ use std::path::{Path, PathBuf};
 use crate::case::Case;
 use crate::cloud::Cloud;
 use crate::geometry::Surface;
+use crate::problem::{self, Problem, ProblemIn, spacing};
+use crate::report::ReportError;
 use crate::scheme::Fluid;
 
-pub use at_end::Outcome;
+pub use crate::problem::{Blame, RunError};
 pub use cloud_table::{CloudTable, cloud_table};
 pub use cost::Cost;
-pub use error::{Blame, RunError};
 pub use error_bars::solve;
 pub use folder::{Places, fresh_folder};
 pub use inspect::{CloudReport, NeighbourCount, SpacingRange, inspect};
@@ -63,6 +67,7 @@ pub use look::forces::GeneralisedForce;
 pub use look::friction::Separation;
 pub use look::{Snapshot, TipVortex, WakePlane, WallSnapshot};
 pub use monitor::{MarchTick, Monitor, Silent, Tick};
+pub use outcome::Outcome;
 pub use record::IterationHistory;
 pub use record::crosscheck::{Apart as LoadsApart, LoadCrosscheck};
 pub use record::polar::PolarPoint;
@@ -71,20 +76,27 @@ pub use record::summary::{Apart, BalanceReport, Ledger, MarchingCheck, Recloudin
 pub use record::trace::{Change, FirstHarmonics, LastPeriod, PeriodicLoads};
 pub use refusals::refusals;
 pub use resumed::continued;
-pub use session::{Session, Solution};
+pub use session::Session;
 pub use shape::{BodyTable, Measures, body_table};
 pub use solids::{
     Ended as SolidOutcome, ModeRow, PeriodicRow, ProbeHarmonic, ProbeRow, SolidLedger, SolidReport, SolidSolution,
     SolidSummary, inspect_structure,
 };
+pub use solution::Solution;
 pub use time_left::{Portion, TimeLeft};
 pub use understood::{
     Aeroelastic, BodyBox, ReferenceValues, Understood, UnderstoodFlutter, UnderstoodGaf, UnderstoodStructure,
 };
 
+use flow::Origin;
 use record::saved::Saved;
-use session::Origin;
 use stage::Stage;
+
+impl From<ReportError> for RunError {
+    fn from(problem: ReportError) -> Self {
+        Self::Report(Box::new(problem))
+    }
+}
 
 /// Runs a case into a fresh folder.
 pub fn run(case: &Case, places: &Places, monitor: &mut dyn Monitor) -> Result<Outcome, RunError> {
@@ -105,7 +117,7 @@ pub fn solid(
     out: Option<&Path>,
     monitor: &mut dyn Monitor,
 ) -> Result<SolidOutcome, RunError> {
-    solids::supported(case)?;
+    problem::solids::supported(case)?;
     let _held = out.map(|out| folder::create(case, input, out)).transpose()?;
     solids::solve(&solids::Job { case, input, out, from: None }, monitor)
 }
@@ -181,10 +193,11 @@ pub fn set_aside(case: &Case, places: &Places) -> Result<Option<PathBuf>, RunErr
     }
     folder::check_compared(case, &places.input)?;
     if !case.has_gas() {
-        solids::supported(case)?;
+        problem::solids::supported(case)?;
         return folder::set_aside(&places.out).map(Some);
     }
-    refusals::rehearse(case, &places.input, case.flutter.is_some() && !case.is_trimmed())?;
+    let held = case.flutter.is_some() && !case.is_trimmed();
+    refusals::rehearse(&Problem::of_case(case, &places.input)?, held)?;
     folder::set_aside(&places.out).map(Some)
 }
 
@@ -211,20 +224,16 @@ pub fn build_cloud<const D: usize>(
     case: &Case,
     input: &Path,
 ) -> Result<(Option<Surface<D>>, Cloud<D>, Vec<String>), RunError> {
-    let (surface, notes) = setup::surface::<D>(case, input)?;
-    let case = accuracy::with_cloud(case, surface.as_ref());
-    let cloud = Cloud::build(&setup::spec(&case), surface.as_ref(), &[])?;
+    let (surface, notes) = problem::surface::<D>(case, input)?;
+    let case = spacing::with_cloud(case, surface.as_ref());
+    let cloud = Cloud::build(&problem::spec(&case), surface.as_ref(), &[])?;
     Ok((surface, cloud, notes))
 }
 
 /// Builds the equations of a case on its own cloud, and the state at the start, without running it.
 pub fn build_solver<const D: usize>(case: &Case, input: &Path) -> Result<(Fluid<D>, Vec<f64>), RunError> {
-    setup::supported(case)?;
-    let (surface, _) = setup::surface::<D>(case, input)?;
-    let case = &*accuracy::with_cloud(case, surface.as_ref());
-    let motions = setup::motions(case, input, surface.as_ref())?;
-    let site = setup::Site { case, surface: surface.as_ref(), motions: &motions };
-    let solver = setup::solver(&site, &Stage::PLAIN, &[], None)?;
+    let problem = ProblemIn::of_case(case, input)?.without_structures();
+    let solver = setup::solver(&problem, &Stage::PLAIN, &[], None)?;
     let start = solver.system.start();
     Ok((solver.system, start))
 }

@@ -5,17 +5,17 @@
 use std::path::Path;
 use std::time::{Duration, Instant};
 
-use super::accuracy;
 use super::cost::Pilot;
 use super::look::Snapshot;
 use super::monitor::{Monitor, Tick};
-use super::recipe;
 use super::session::Session;
 use super::setup::behind_shocks;
 use crate::case::{Case, Initial, Temporal, Time};
 use crate::cloud::CloudSpec;
 use crate::cloud::layout::count;
 use crate::geometry::Surface;
+use crate::problem::numerics;
+use crate::problem::spacing;
 
 /// Greatest number of particles of a pilot: a fraction of a second in the plane.
 const MOST: f64 = 6000.0;
@@ -63,12 +63,12 @@ pub(super) fn fly<const D: usize>(
     n: usize,
     period: Option<f64>,
 ) -> Option<Pilot> {
-    let relaxation = recipe::relaxation(case).filter(|_| !matches!(case.time, Temporal::Harmonics(_)))?;
+    let relaxation = numerics::relaxation(case).filter(|_| !matches!(case.time, Temporal::Harmonics(_)))?;
     if case.bodies.is_empty() || !matches!(case.initial, Initial::FreeStream) {
         return None;
     }
     let factor = FACTORS.into_iter().find(|f| n as f64 / f.powi(D as i32) <= MOST)?;
-    let mut coarse = accuracy::scaled(case.points().first()?, factor);
+    let mut coarse = spacing::scaled(case.points().first()?, factor);
     (coarse.time, coarse.accuracy) = (Temporal::Steady(relaxation), None);
     (coarse.motion, coarse.gaf) = (None, None);
     // what moves in modes alone is rigid here, and not made of particles
@@ -91,7 +91,7 @@ pub(super) fn fly<const D: usize>(
 /// Seconds of an implicit step in time on the coarser cloud with `factor` times the spacing; `None` where there are none, or too few were
 /// taken in the time.
 fn step<const D: usize>(case: &Case, input: &Path, (factor, period): (f64, Option<f64>)) -> Option<f64> {
-    let mut coarse = accuracy::scaled(case, factor);
+    let mut coarse = spacing::scaled(case, factor);
     let length = case.step_length(period)?;
     let Temporal::Dual(dual) = &mut coarse.time else { return None };
     let until = Time(STEPS * case.flow.units().case_time(length));

@@ -5,12 +5,12 @@
 //! is told by [`inspect`](super::inspect).
 use std::path::Path;
 
-use super::error::RunError;
-use super::{accuracy, flutter, folder, gaf, setup, solids, studies};
+use super::{flutter, folder, gaf, studies};
 use crate::case::{Case, Temporal, read_mode};
 use crate::cloud::layout::count;
 use crate::geometry::dimension;
 use crate::motion::faulty_tables;
+use crate::problem::{Problem, ProblemIn, RunError, files, solids, spec, surface};
 
 /// All that the commands refuse of a case whose file names refer to the folder `input`; empty where they can begin.
 pub fn refusals(case: &Case, input: &Path) -> Vec<RunError> {
@@ -23,43 +23,36 @@ pub fn refusals(case: &Case, input: &Path) -> Vec<RunError> {
     for problem in shapes(case, input).into_iter().chain(tables(case, input)) {
         all.look::<()>(Err(problem));
     }
-    all.look(setup::supported(case));
-    let Some(case) = all.look(solids::with_own_modes(case, input)) else { return all.found };
     // small motions are about bodies as drawn, unless they are trimmed
-    all.look(rehearse(&case, input, case.flutter.is_some() && !case.is_trimmed()));
+    let held = case.flutter.is_some() && !case.is_trimmed();
+    all.look(Problem::of_case(case, input).and_then(|problem| rehearse(&problem, held)));
     if case.flutter.is_some() {
-        all.look(flutter::rehearse(&case, input));
+        all.look(flutter::rehearse(case, input));
     }
     if case.gaf.is_some() {
-        all.look(gaf::rehearse(&case, input));
+        all.look(gaf::rehearse(case, input));
     }
     all.found
 }
 
-/// Refuses a case of which it is known before its cloud is built that it cannot begin; bodies that are `held` need no springs.
-pub(super) fn rehearse(case: &Case, input: &Path, held: bool) -> Result<(), RunError> {
-    match dimension(case) {
-        2 => within::<2>(case, input, held),
-        _ => within::<3>(case, input, held),
+/// Refuses a problem of which it is known before its cloud is built that it cannot begin; bodies that are `held` need no springs.
+pub(super) fn rehearse(problem: &Problem, held: bool) -> Result<(), RunError> {
+    match problem {
+        Problem::Plane(problem) => within(problem, held),
+        Problem::Space(problem) => within(problem, held),
     }
 }
 
-fn within<const D: usize>(case: &Case, input: &Path, held: bool) -> Result<(), RunError> {
-    setup::supported(case)?;
-    let case = &solids::with_own_modes(case, input)?;
-    let (surface, _) = setup::surface::<D>(case, input)?;
-    let case = &*accuracy::with_cloud(case, surface.as_ref());
-    let mut motions = setup::motions(case, input, surface.as_ref())?;
-    setup::sane(case, surface.as_ref(), &motions)?;
-    let bodies = setup::bodies(case, input, surface.as_ref(), &mut motions)?;
+fn within<const D: usize>(problem: &ProblemIn<D>, held: bool) -> Result<(), RunError> {
+    let case = problem.case();
     if !held {
-        setup::check_equilibrium(case, surface.as_ref(), &bodies)?;
+        problem.check_equilibrium()?;
     }
     // supports of bodies made of particles have periods as well
     if matches!(case.time, Temporal::Harmonics(_)) && case.solids().next().is_none() {
-        studies::check_period(&motions)?;
+        studies::check_period(problem.motions())?;
     }
-    count(&setup::spec(case), surface.as_ref(), &[])?;
+    count(&spec(case), problem.surface(), &[])?;
     Ok(())
 }
 
@@ -72,8 +65,8 @@ pub(super) fn with_other_files(case: &Case, input: &Path, problem: RunError) -> 
     let mut all = Refusals::default();
     all.look::<()>(Err(problem));
     let surfaces = match dimension(case) {
-        2 => setup::surface::<2>(case, input).map(|_| ()),
-        _ => setup::surface::<3>(case, input).map(|_| ()),
+        2 => surface::<2>(case, input).map(|_| ()),
+        _ => surface::<3>(case, input).map(|_| ()),
     };
     all.look(surfaces.map_err(Geometry));
     for other in shapes(case, input).into_iter().chain(tables(case, input)) {
@@ -84,7 +77,7 @@ pub(super) fn with_other_files(case: &Case, input: &Path, problem: RunError) -> 
 
 /// Mistakes in the tables of all motions that a case names.
 fn tables(case: &Case, input: &Path) -> Vec<RunError> {
-    let read = |name: &str| folder::text(input, name);
+    let read = |name: &str| files::text(input, name);
     let found = match dimension(case) {
         2 => faulty_tables::<2>(case, &read),
         _ => faulty_tables::<3>(case, &read),
@@ -101,7 +94,7 @@ fn shapes(case: &Case, input: &Path) -> Vec<RunError> {
     let mut files: Vec<&String> = prescribed.chain(elastic).chain(flexible).collect();
     files.sort();
     files.dedup();
-    let read = |file: &String| read_mode(&folder::text(input, file).ok()?, file, usize::from(dimension(case))).err();
+    let read = |file: &String| read_mode(&files::text(input, file).ok()?, file, usize::from(dimension(case))).err();
     files.into_iter().filter_map(read).map(RunError::Case).collect()
 }
 

@@ -1,10 +1,11 @@
 //! Going on with a run from its checkpoint.
 use std::path::Path;
 
-use super::error::RunError;
+use super::flow::Origin;
 use super::folder;
 use super::record::saved::{Saved, equations_of};
-use super::session::{Origin, Session};
+use super::session::Session;
+use crate::problem::RunError;
 
 /// A session that goes on with the run in `out` from its checkpoint, to the same bits as if it had not been stopped.
 pub fn continued(out: &Path) -> Result<Session, RunError> {

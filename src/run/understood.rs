@@ -5,13 +5,14 @@ use serde::Serialize;
 
 pub use aeroelastic::{Aeroelastic, UnderstoodFlutter, UnderstoodGaf, UnderstoodStructure};
 
-use super::look::reference::chord;
 use crate::case::Case;
 use crate::geometry::Surface;
 use crate::math::digits::short;
 use crate::math::{Bounds, Vector};
 use crate::motion::Motions;
 use crate::observe::loads::LoadAxes;
+use crate::problem::numerics::balance;
+use crate::problem::reference::chord;
 
 /// Stream, reference values, bodies and times of a case: in SI units where `dimensional` is true; otherwise lengths are in the
 /// unit of the geometry, and density and sound speed of the stream are 1.
@@ -114,7 +115,7 @@ impl Understood {
             multiples: Some(motions.multiples()).filter(|m| m.iter().any(|n| *n > 1)).unwrap_or_default(),
             reduced_frequency: period.map(frequency).filter(|k| k.is_finite()),
             time_step: time(case.step_length(period)),
-            until: time(case.end(period).filter(|_| super::recipe::balance(case).is_none())),
+            until: time(case.end(period).filter(|_| balance(case).is_none())),
             points: case.polar.as_ref().map(crate::case::Polar::len),
             aeroelastic,
         }

@@ -1,8 +1,10 @@
-//! Tests of the numerics as another program uses them, in one program: what they share of the library is compiled once.
+//! Tests of the library as another program uses it, in one program: what they share of the library is compiled once.
 #![allow(clippy::unwrap_used, reason = "a test may stop anywhere")]
 
 #[path = "../common/mod.rs"]
 mod common;
+
+mod accuracy;
 mod convergence;
 mod coupled;
 mod examples;
@@ -18,8 +20,11 @@ mod limit_cycles;
 mod modes;
 mod motion;
 mod operators;
+mod polar;
 mod properties;
 mod solids;
 mod steps;
 mod structure;
 mod travel;
+mod units;
+mod verification;

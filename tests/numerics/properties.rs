@@ -153,20 +153,12 @@ impl<const D: usize> Pair<D> {
 /// Choices of a scheme: second order, correction at low Mach number, conservative, by faces, viscous.
 type Ways = [bool; 5];
 
-fn scheme<F, L>(
-    flux: F,
-    limit: L,
-    [second_order, low_mach, conservative, by_faces, viscous]: Ways,
-) -> FluxScheme<F, L> {
+fn scheme(flux: Flux, limit: Limiter, [second_order, low_mach, conservative, by_faces, viscous]: Ways) -> FluxScheme {
     let reconstruction = Reconstruction { second_order, kappa: 1.0 / 3.0, threshold: 0.02, low_mach };
     FluxScheme { gas: AIR, flux, limit, reconstruction, conservative, by_faces, medium: viscous.then_some(OIL) }
 }
 
-fn edge<const D: usize, F: UpwindFlux<D>, L: Limit>(
-    scheme: &FluxScheme<F, L>,
-    at: &Pair<D>,
-    blind: bool,
-) -> TestCaseResult {
+fn edge<const D: usize>(scheme: &FluxScheme, at: &Pair<D>, blind: bool) -> TestCaseResult {
     let ([a, b], face) = (&at.ends, &at.face);
     let states = [&a.state, &b.state];
     let [i, j] = edge_flux(scheme, [a, b], face);
@@ -198,12 +190,12 @@ fn edge<const D: usize, F: UpwindFlux<D>, L: Limit>(
 
 fn every_edge<const D: usize>(ways: Ways, at: &Pair<D>) -> TestCaseResult {
     // limiters look at velocities by their components, so that only without one turned axes see the same
-    edge(&scheme(Hllc, Unlimited, ways), at, true)?;
-    edge(&scheme(Roe, Unlimited, ways), at, true)?;
-    edge(&scheme(AusmPlusUp, Unlimited, ways), at, true)?;
-    edge(&scheme(Rusanov, Unlimited, ways), at, true)?;
-    edge(&scheme(Hllc, VanAlbada, ways), at, !ways[0])?;
-    edge(&scheme(Roe, Venkatakrishnan, ways), at, !ways[0])
+    edge(&scheme(Flux::Hllc, Limiter::None, ways), at, true)?;
+    edge(&scheme(Flux::Roe, Limiter::None, ways), at, true)?;
+    edge(&scheme(Flux::AusmPlusUp, Limiter::None, ways), at, true)?;
+    edge(&scheme(Flux::Rusanov, Limiter::None, ways), at, true)?;
+    edge(&scheme(Flux::Hllc, Limiter::VanAlbada, ways), at, !ways[0])?;
+    edge(&scheme(Flux::Roe, Limiter::Venkatakrishnan, ways), at, !ways[0])
 }
 
 proptest! {

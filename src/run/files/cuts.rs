@@ -2,7 +2,6 @@
 //!
 //! The Mach number is shown in the plane of symmetry, or in the middle of the bodies where there is none; the axial vorticity and the
 //! flow across the stream in a plane behind bodies that lift. Lines there follow v and w less those of the free stream.
-use super::super::error::RunError;
 use super::super::look::{CrossPlane, side_of_symmetry};
 use super::raster::{MARGIN, Plane, sampled, together};
 use super::target::Scene;
@@ -11,6 +10,7 @@ use crate::math::slice::slice;
 use crate::math::sweep::sweep_each_chunk;
 use crate::math::{Bounds, Vector};
 use crate::physics::Primitive;
+use crate::problem::RunError;
 use crate::report::{Colormap, PictureStyle, Raster, raster_png, write_file, write_stations, write_surface_views};
 use crate::scheme::probe::{Near, Probe};
 use crate::scheme::start::free_stream;

@@ -1,5 +1,4 @@
 //! What a run leaves in its folder: tables, fields, pictures.
-mod about;
 mod cuts;
 mod pictures;
 mod raster;
@@ -10,8 +9,7 @@ mod target;
 
 use std::path::{Path, PathBuf};
 
-use super::error::RunError;
-use super::folder;
+use super::about;
 use super::found::Found;
 use super::look::{GasView, Held, Hull, Mesh, Rim, SHADE, Snapshot, WallSnapshot, field, planes};
 use super::record::summary::Summary;
@@ -24,6 +22,8 @@ use crate::observe::About;
 use crate::observe::loads::together as both;
 use crate::observe::table::{Entry, write_csv, write_json};
 use crate::observe::vtk::{Column, Facets, read_collection, write_cells, write_collection, write_surface};
+use crate::problem::RunError;
+use crate::problem::files;
 use crate::report;
 use crate::scheme::Work;
 
@@ -54,7 +54,7 @@ pub(crate) fn write_all<const D: usize>(
     write_state_script(out)?;
     if let Some(solid) = solid {
         let time = found.case.flow.units().case_time(found.view.time());
-        write_solid((out, "solid"), &About::solid(found.case, Some(time)), solid)?;
+        write_solid((out, "solid"), &about::solid(found.case, Some(time)), solid)?;
         if found.case.output.report {
             draw_solid(out, solid)?;
         }
@@ -189,7 +189,7 @@ impl<const D: usize> Files<'_, D> {
         let columns: Vec<Column<'_>> =
             cut.iter().map(|(name, n, values)| Column { name, components: *n, values }).collect();
         let points = &all.points[range];
-        let about = About::gas(self.found.case, "cp", Some(time));
+        let about = about::gas(self.found.case, "cp", Some(time));
         write_surface(&self.out.join("surface.vtp"), &about, points, mesh.facets(), &columns)?;
         self.write_hull(all, &about)
     }
@@ -228,7 +228,7 @@ fn write_field<const D: usize>(
     let (mesh, few) = (Mesh::of(cloud, &held, &rim), rim.with_field(held.thinned(all)));
     let columns: Vec<Column<'_>> =
         few.columns.iter().map(|(name, components, values)| Column { name, components: *components, values }).collect();
-    write_cells(&path, &About::gas(case, "mach", Some(time)), &few.points, mesh.cells(), &columns)?;
+    write_cells(&path, &about::gas(case, "mach", Some(time)), &few.points, mesh.cells(), &columns)?;
     Ok(mesh)
 }
 
@@ -254,14 +254,14 @@ pub(crate) fn write_solid_series<const D: usize>(
 ) -> Result<(), RunError> {
     let name = format!("solid-{:05}", passed(time, interval));
     let time = to.case.flow.units().case_time(time);
-    write_solid((to.out, &name), &About::solid(to.case, Some(time)), at)?;
+    write_solid((to.out, &name), &about::solid(to.case, Some(time)), at)?;
     list(to.out, "solid.pvd", f64::NEG_INFINITY, (time, format!("{name}.vtu")))
 }
 
 /// Adds a field to the list called `name`, in which only those after `since` stay. A run that went on from a checkpoint writes
 /// the later ones again.
 fn list(out: &Path, name: &str, since: f64, (time, file): (f64, String)) -> Result<(), RunError> {
-    let mut files = read_collection(&folder::text(out, name).unwrap_or_default());
+    let mut files = read_collection(&files::text(out, name).unwrap_or_default());
     files.retain(|(t, f)| *t > since && *t < time && *f != file);
     files.push((time, file));
     let listed: Vec<(f64, &str)> = files.iter().map(|(t, f)| (*t, f.as_str())).collect();

@@ -1,5 +1,4 @@
 //! Pictures of a run, drawn through the solver's own fit.
-use super::super::error::RunError;
 use super::super::look::pressure_coefficient;
 use super::cuts;
 use super::raster::{MARGIN, Plane, sampled, together};
@@ -7,6 +6,7 @@ use super::target::{FILM, Scene};
 use crate::geometry::Surface;
 use crate::math::{Bounds, Vector};
 use crate::physics::Primitive;
+use crate::problem::RunError;
 use crate::report::{
     Colormap, Dots, PictureStyle, Raster, Scatter, raster_png, scatter_png, write_file, write_pressure,
 };

@@ -1,9 +1,9 @@
 //! The flow on a grid of pixels in a plane, by the solver's own fit.
-use super::super::error::RunError;
 use super::target::Scene;
 use crate::math::sweep::{sweep_each, sweep_each_chunk};
 use crate::math::{Bounds, Vector};
 use crate::physics::Primitive;
+use crate::problem::RunError;
 use crate::scheme::probe::{Near, Probe};
 
 /// Pixels from one that is computed by the fit to the next, at most.

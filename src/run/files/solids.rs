@@ -1,11 +1,11 @@
 //! Bodies made of particles in a gas: their fields, and a picture of them.
 use std::path::Path;
 
-use super::super::error::RunError;
 use super::super::solids::files::write;
 use super::super::solids::pictures::draw;
 use crate::coupling::SolidSnapshot;
 use crate::observe::About;
+use crate::problem::RunError;
 
 /// Their fields: `<name>.vtu`.
 pub(crate) fn write_solid<const D: usize>(

@@ -6,7 +6,7 @@ use crate::observe::write_atomic;
 
 /// Its name: a module called `paraview` would hide that of ParaView.
 const FILE: &str = "paraview-state.py";
-const SCRIPT: &str = include_str!("../../../templates/paraview-state.py");
+const SCRIPT: &str = include_str!("paraview-state.py");
 
 /// Writes it into the folder of a run. It is the same for all runs but for where they lie, which helps where ParaView does not tell a
 /// script its own place.

@@ -3,9 +3,8 @@
 //!
 //! Crossings alone do not tell it: a motion may grow from the lowest speed on that is looked at. So every motion below that speed is looked at too.
 use super::damping::LEAST;
-use super::record::FlutterAt;
-use super::rows::{Clearance, MotionRow};
 use super::scales::Scales;
+use crate::record::flutter::{Clearance, FlutterAt, MotionRow};
 
 /// Equivalent airspeed that must be free, over the design speed.
 const REQUIRED: f64 = 1.15;
@@ -60,16 +59,16 @@ fn grows_below(at: &FlutterAt, required: f64) -> Option<(f64, &MotionRow)> {
 
 #[cfg(test)]
 mod tests {
-    use super::super::rows::{Bars, Doubt, FlutterRow};
+    use super::super::held::problem_of;
     use super::*;
     use crate::case::Matching;
+    use crate::record::flutter::{Bars, Doubt, FlutterRow};
 
     fn scales() -> Scales {
         let text = "[flow]\nmach = 0.5\npressure = \"101325 Pa\"\ntemperature = \"288.15 K\"\n[[body]]\nnaca = \"0012\"\n\
                     [structure]\nmass = \"10 kg/m\"\nelastic_axis = -0.4\nr_alpha2 = 0.25\nx_alpha = 0.2\n\
                     frequency = { plunge = \"5 Hz\", pitch = \"10 Hz\" }\n[flutter]\n";
-        let case = crate::case::read(text, "case.toml").unwrap_or_else(|e| panic!("{e}"));
-        Scales::of(&case.flutter_case(0.5), 1.0, Matching::None)
+        Scales::of(problem_of(text).about_steady_flow(0.5).unwrap().case(), 1.0, Matching::None)
     }
 
     fn told(speeds: &[(f64, f64)], doubt: Option<f64>) -> (FlutterAt, Clearance) {

@@ -1,9 +1,8 @@
 //! What the spacing of the cloud does to a boundary: how far crossings move on coarser clouds, and which motions grow on one of two alone.
-use super::super::one_cloud::times_the_spacing;
 use super::damping::{Pair, What, curves, pairs, safety};
-use super::record::{FlutterAt, remedy};
-use super::rows::Doubt;
 use super::scales::Scales;
+use crate::problem::coarser::times_the_spacing;
+use crate::record::flutter::{Doubt, FlutterAt, remedy};
 
 /// Tells the error that the cloud leaves in each crossing of `at`, and where the cloud decides whether motions grow, from the boundaries
 /// on coarser clouds, each with its spacing over that of `at`.
@@ -107,17 +106,18 @@ fn in_words(doubt: &Doubt, dimensional: bool) -> String {
 
 #[cfg(test)]
 mod tests {
-    use super::super::rows::{FlutterRow, MotionRow};
-    use super::super::scales::CaseReference;
+    use super::super::held::problem_of;
     use super::*;
     use crate::case::{Case, Matching};
+    use crate::record::flutter::CaseReference;
+    use crate::record::flutter::{FlutterRow, MotionRow};
 
     fn case(cloud: &str) -> Case {
         let text = format!(
             "[flow]\nmach = 0.5\n[[body]]\nnaca = \"0012\"\n[structure]\nelastic_axis = -0.4\nmass_ratio = 30\nx_alpha = 0.2\n\
              r_alpha2 = 0.25\nfrequency_ratio = 0.4\nspeed_index = 2.0\n[flutter]\n{cloud}"
         );
-        crate::case::read(&text, "case.toml").unwrap().flutter_case(0.5)
+        problem_of(&text).about_steady_flow(0.5).unwrap().case().clone()
     }
 
     fn at(crossings: Vec<FlutterRow>, motions: Vec<MotionRow>) -> FlutterAt {

@@ -5,8 +5,8 @@
 //! order of convergence, so that the error bar of a crossing has a safety factor: Roache's 3/(rᵖ − 1) for r times the spacing, with twice of
 //! it 1 at second order and 3 at the first, which shocks leave; with a third cloud 1.25/(r − 1) (J. Fluids Eng. 116, 1994,
 //! doi:10.1115/1.2910291).
-use super::super::one_cloud::COARSER;
-use super::rows::MotionRow;
+use crate::problem::coarser::COARSER;
+use crate::record::flutter::MotionRow;
 
 /// Safety factor of a difference to a cloud with twice the spacing: the mean of what smooth flow and flow with shocks ask for.
 const SAFETY: f64 = 2.0;

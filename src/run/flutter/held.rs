@@ -1,36 +1,17 @@
 //! The structure of a case before there is a flow: what stored forces must fit.
 use std::path::Path;
 
-use serde::{Deserialize, Serialize};
-
-use super::super::error::RunError;
-use super::super::folder;
-use super::super::look::reference::chord;
-use super::super::setup;
 use crate::case::Case;
 use crate::coupling::Attached;
-use crate::geometry::dimension;
-use crate::motion::Motions;
 use crate::observe::structure::is_angle;
+use crate::problem::reference::chord;
+use crate::problem::{Problem, ProblemIn, files};
+use crate::record::flutter::Mark;
 use crate::structure::{Matrices, Model, Spring};
 
 mod translations;
 
 pub(super) use translations::Translation;
-
-/// Part of a chord by which pivots may differ.
-const SAME: f64 = 1e-6;
-
-/// What a coordinate moves, beside its name.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct Mark {
-    /// Point about which a rigid body turns.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub pivot: Option<Vec<f64>>,
-    /// Checksum of the shape of a mode, or of its file.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub shape: Option<String>,
-}
 
 /// Structures at rest.
 pub(super) struct Held {
@@ -48,15 +29,6 @@ pub(super) struct Held {
     pub(super) translations: Vec<Translation>,
 }
 
-impl Mark {
-    /// True where both are known and differ.
-    pub(super) fn contradicts(&self, other: &Self, chord: f64) -> bool {
-        let apart = |a: &Vec<f64>, b: &Vec<f64>| a.iter().zip(b).any(|(a, b)| (a - b).abs() > SAME * chord);
-        let pivots = self.pivot.as_ref().zip(other.pivot.as_ref()).is_some_and(|(a, b)| apart(a, b));
-        pivots || self.shape.as_ref().zip(other.shape.as_ref()).is_some_and(|(a, b)| a != b)
-    }
-}
-
 impl Held {
     /// What each coordinate is counted in where shapes are told: rigid bodies are displaced by parts of `b`.
     pub(super) fn units(&self, b: f64) -> Vec<f64> {
@@ -64,22 +36,20 @@ impl Held {
         self.names.iter().zip(&self.marks).map(unit).collect()
     }
 
-    /// The structures of `case`, whose files lie in `input`.
-    pub(super) fn of(case: &Case, input: &Path) -> Result<Self, RunError> {
-        match dimension(case) {
-            2 => Self::within::<2>(case, input),
-            _ => Self::within::<3>(case, input),
+    /// The structures of a problem.
+    pub(super) fn of(problem: &Problem) -> Self {
+        match problem {
+            Problem::Plane(problem) => Self::within(problem),
+            Problem::Space(problem) => Self::within(problem),
         }
     }
 
-    fn within<const D: usize>(case: &Case, input: &Path) -> Result<Self, RunError> {
-        let surface = setup::surface::<D>(case, input)?.0;
-        let mut motions = Motions::<D>::fixed(case.bodies.len());
-        let bodies = setup::bodies(case, input, surface.as_ref(), &mut motions)?;
+    fn within<const D: usize>(problem: &ProblemIn<D>) -> Self {
+        let (case, surface, bodies) = (problem.case(), problem.surface(), problem.structures());
         let n = bodies.last().map_or(0, |b| b.range().end);
         let mut matrices = Matrices { mass: vec![0.0; n * n], damping: vec![0.0; n * n], stiffness: vec![0.0; n * n] };
         let (mut names, mut marks, mut springs) = (Vec::new(), Vec::new(), Vec::new());
-        for body in &bodies {
+        for body in bodies {
             let (m, still) = (body.structure.len(), vec![0.0; body.structure.len()]);
             let own = body.structure.matrices(&still, &still);
             let pairs = [
@@ -92,11 +62,18 @@ impl Held {
             }
             names.extend(body.structure.coordinates().iter().map(|c| c.name.clone()));
             springs.extend(body.structure.coordinates().iter().map(|c| c.spring));
-            marks.extend((0..m).map(|k| mark(case, input, body, k)));
+            marks.extend((0..m).map(|k| mark(case, problem.input(), body, k)));
         }
-        let translations = surface.as_ref().map_or(Vec::new(), |s| translations::translations(case, s, (&bodies, n)));
-        Ok(Self { chord: chord(case, surface.as_ref()), names, marks, matrices, springs, translations })
+        let translations = surface.map_or(Vec::new(), |s| translations::translations(case, s, (bodies, n)));
+        Self { chord: chord(case, surface), names, marks, matrices, springs, translations }
     }
+}
+
+/// Structures of a problem in the steady flow of a case text at Mach 0.5, for tests.
+#[cfg(test)]
+pub(super) fn problem_of(text: &str) -> Problem {
+    let case = crate::case::read(text, "case.toml").unwrap_or_else(|e| panic!("{e}"));
+    Problem::of_case(&case, "").unwrap_or_else(|e| panic!("{e}"))
 }
 
 fn mark<const D: usize>(case: &Case, input: &Path, body: &Attached<D>, k: usize) -> Mark {
@@ -109,7 +86,7 @@ fn mark<const D: usize>(case: &Case, input: &Path, body: &Attached<D>, k: usize)
     let mode = case.structure_of(body.body).and_then(|s| s.modes.get(k)).filter(|_| pivot.is_none());
     let text = mode.and_then(|mode| match &mode.table {
         Some(table) => Some(format!("{table:?}")),
-        None => folder::text(input, &mode.file).ok(),
+        None => files::text(input, &mode.file).ok(),
     });
     Mark { pivot, shape: text.map(|t| format!("{:08x}", crc32fast::hash(t.as_bytes()))) }
 }

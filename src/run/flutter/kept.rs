@@ -6,13 +6,12 @@ use std::path::Path;
 
 use serde::{Deserialize, Serialize};
 
-use super::super::error::RunError;
 use super::super::folder::{self, KEPT};
-use super::record::{FlutterAt, LimitCycle};
-use super::rows::MotionRow;
-use super::state_space::StateSpaceAt;
 use crate::case::Case;
 use crate::observe::table::write_json;
+use crate::problem::RunError;
+use crate::problem::files;
+use crate::record::flutter::{FlutterAt, LimitCycle, MotionRow, StateSpaceAt};
 
 /// All that is finished of one case.
 #[derive(Clone, Serialize, Deserialize)]
@@ -42,7 +41,7 @@ impl Kept {
     pub(super) fn of(case: &Case, input: &Path, out: Option<&Path>) -> Result<Self, RunError> {
         let key = folder::identity(case, input);
         let none = |key| Self { key, crc32: 0, finished: Vec::new() };
-        let Some((out, text)) = out.and_then(|out| Some((out, folder::text(out, KEPT).ok()?))) else {
+        let Some((out, text)) = out.and_then(|out| Some((out, files::text(out, KEPT).ok()?))) else {
             return Ok(none(key));
         };
         let tree = serde_json::from_str::<serde_json::Value>(&text).unwrap_or_default();
@@ -115,7 +114,7 @@ impl Finished {
 
 #[cfg(test)]
 mod tests {
-    use super::super::record::tests::cycle;
+    use super::super::marched::tests::cycle;
     use super::*;
 
     #[test]

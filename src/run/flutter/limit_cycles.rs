@@ -7,17 +7,18 @@
 //! A point is stable where the motion decays when it is larger than it, and grows when it is smaller: at the speed of a cycle motions of other
 //! amplitudes change as fast as that speed is off theirs. With growth beyond a speed of flutter, the branch is stable where its speed rises
 //! with the amplitude; the other way round where motions cease to grow. So it is with densities and pressures where these are varied.
-use super::super::error::RunError;
+use num_complex::Complex64;
+
 use super::super::record::Log;
 use super::super::studies::ForceSource;
-use super::record::{Found, LimitCycle, remedy};
 use super::search::Search;
 use crate::case::{GasResponse, LimitCycles};
 use crate::observe::structure::is_angle;
+use crate::problem::RunError;
+use crate::record::flutter::{LimitCycle, Warning, remedy};
 use crate::structure::Spring;
 use crate::structure::flutter::Kind;
 use crate::structure::limit_cycle::{Borne, Cycle, Oscillator, Periodic};
-use num_complex::Complex64;
 
 /// Part of the accuracy by which speed and frequency may change in the last balance.
 const STILL: f64 = 0.2;
@@ -88,7 +89,7 @@ impl<'s, 'a> Seek<'s, 'a> {
     }
 
     /// All branches; forces beyond small motions are those of `source`, where there is one and the case asks for them.
-    pub(super) fn run(mut self, mut source: Source<'_, '_>) -> Found {
+    pub(super) fn run(mut self, mut source: Source<'_, '_>) -> (Vec<LimitCycle>, Vec<Warning>) {
         let (amplitudes, mut warnings) = (self.plan.amplitudes(), Vec::new());
         let mut begins = self.begins(amplitudes[0]);
         // amplitudes follow what is varied from where forces act

@@ -3,30 +3,21 @@
 //! The march begins from the steady flow around the body in that place, so that the gas has to find its motion first; it goes on until the
 //! amplitudes of two successive periods agree. What it ends with is told beside what the balance has.
 use std::f64::consts::TAU;
-use std::path::Path;
 
-use super::super::accuracy::Forces;
-use super::super::at_end::Outcome;
-use super::super::error::RunError;
 use super::super::monitor::Monitor;
-use super::super::one_cloud::on_one_cloud;
+use super::super::outcome::Outcome;
 use super::super::session::Session;
 use super::super::watch::Alike;
-use super::record::{FlutterAt, LimitCycle, MarchedCycle, remedy};
-use crate::case::{Case, StreamRatio};
 use crate::observe::structure::is_angle;
 use crate::observe::swing::Swing;
+use crate::problem::{March, Problem, RunError, StreamRatio};
+use crate::record::flutter::{FlutterAt, LimitCycle, MarchedCycle, remedy};
 
 /// Periods, at most.
 const MOST: f64 = 30.0;
 
-/// Marches the largest stable limit cycle of `at` in `case`; false when told to stop.
-pub(super) fn march(
-    case: &Case,
-    at: &mut FlutterAt,
-    input: &Path,
-    monitor: &mut dyn Monitor,
-) -> Result<bool, RunError> {
+/// Marches the largest stable limit cycle of `at`; false when told to stop.
+pub(super) fn march(problem: &Problem, at: &mut FlutterAt, monitor: &mut dyn Monitor) -> Result<bool, RunError> {
     let stable = at.cycles.iter().enumerate().filter(|(_, c)| c.stable);
     let Some(largest) = stable.max_by(|a, b| a.1.amplitude.total_cmp(&b.1.amplitude)).map(|(k, _)| k) else {
         at.warn(("no limit cycle is stable: there is none to march".into(), remedy::CYCLES));
@@ -46,12 +37,9 @@ pub(super) fn march(
     };
     // at a speed x times that of the case times pass x times as fast
     let period = cycle.speed_ratio / cycle.frequency;
-    let own = on_one_cloud(
-        case.cycle_case((at.mach, stream), (&start(cycle, TAU / period), &at.borne), [period, MOST]),
-        input,
-        Forces::Boundary,
-    )?;
-    let mut session = Session::open(&own, input)?;
+    let start = start(cycle, TAU / period);
+    let march = March { mach: at.mach, stream, start: &start, borne: &at.borne, period, most: MOST };
+    let mut session = Session::of(problem.march_of(&march)?);
     let summary = match session.solve(monitor) {
         Ok(Outcome::Finished(summary)) => summary,
         Ok(_) => return Ok(false),
@@ -112,9 +100,36 @@ fn doubts(found: &MarchedCycle, balanced: f64) -> Vec<String> {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::super::record::tests::cycle;
+pub(super) mod tests {
     use super::*;
+
+    /// A limit cycle of two degrees of pitch.
+    pub(in crate::run) fn cycle() -> LimitCycle {
+        LimitCycle {
+            mach: 0.8,
+            branch: 1,
+            coordinate: "pitch".into(),
+            amplitude: 2.0,
+            speed_ratio: 1.2,
+            speed_index: Some(0.72),
+            reduced_speed: None,
+            speed: 0.96,
+            density: 1.0,
+            dynamic_pressure: 0.4,
+            altitude: None,
+            reduced_frequency: 0.1,
+            frequency: 0.03,
+            stable: true,
+            mean: 0.0,
+            means: vec![0.01, 0.0],
+            harmonics: 2,
+            error: 0.001,
+            balances: 5,
+            motion: vec![vec![[-0.14, 0.03], [0.035, 0.0]], vec![[1e-3, 2e-3], [-1e-3, 5e-4]]],
+            extrapolated: false,
+            march: None,
+        }
+    }
 
     #[test]
     fn a_march_begins_where_the_motion_is_at_phase_zero() {
@@ -135,7 +150,7 @@ mod tests {
 
     #[test]
     fn a_march_has_the_structure_of_the_speed_found() {
-        use super::super::held::Held;
+        use super::super::held::{Held, problem_of};
         const BODY: &str = "[[body]]\nnaca = \"0012\"\n[cloud]\nspacing = 0.1\n[flutter]\n[structure]\nelastic_axis = -0.4\nmass_ratio = 60\n\
                             x_alpha = 0.2\nr_alpha2 = 0.25\ndamping_ratio = { pitch = 0.02 }\nsprings = { pitch = { cubic = 40 } }\n";
         let ways = [
@@ -150,9 +165,12 @@ mod tests {
         let denser = StreamRatio { pressure: 2.0, temperature: 1.0 };
         for (stream, (flow, keys)) in ways.iter().flat_map(|way| [(faster, way), (denser, way)]) {
             let [stiffness, damping, mass] = stream.structural();
-            let case = crate::case::read(&format!("{flow}{BODY}{keys}"), "case.toml").unwrap_or_else(|e| panic!("{e}"));
-            let own = case.cycle_case((0.5, stream), (&[[0.1, 2.0], [0.05, 3.0]], &[0.5, -0.25]), [10.0, MOST]);
-            let [before, after] = [case.flutter_case(0.5), own.clone()].map(|c| Held::of(&c, Path::new("")).unwrap());
+            let problem = problem_of(&format!("{flow}{BODY}{keys}"));
+            let (start, borne) = ([[0.1, 2.0], [0.05, 3.0]], [0.5, -0.25]);
+            let march = March { mach: 0.5, stream, start: &start, borne: &borne, period: 10.0, most: MOST };
+            let marched = problem.march_of(&march).unwrap();
+            let own = marched.case();
+            let [before, after] = [&problem.about_steady_flow(0.5).unwrap(), &marched].map(Held::of);
             let over = |a: &[f64], b: &[f64], factor: f64| {
                 a.iter().zip(b).all(|(a, b)| (a - b * factor).abs() <= 1e-12 * b.abs().max(1e-9))
             };
@@ -168,10 +186,8 @@ mod tests {
             );
             assert_eq!(own.swing().map(|t| t.0), Some(10.0));
             // held as drawn against the steady flow
-            let pressure = own.flow.units().pressure();
-            let force =
-                |name| own.structures[0].force.as_ref().unwrap().formulas[name].parse::<f64>().unwrap() / pressure;
-            assert!(over(&[force("plunge"), force("pitch")], &[-0.5, 0.25], 1.0), "{keys}");
+            let Problem::Plane(plane) = &marched else { panic!("{keys}") };
+            assert!(over(&plane.structures()[0].structure.forces(0.0), &[-0.5, 0.25], 1.0), "{keys}");
         }
     }
 

@@ -1,12 +1,11 @@
 //! Numbers that turn those of the solver into those of users, and how the stream is varied.
 use std::f64::consts::{PI, TAU};
 
-use serde::{Deserialize, Serialize};
-
-use super::rows::Bars;
-use crate::case::{Case, FreeStreamScales, Matching, StreamRatio, StructureModel};
+use crate::case::{Case, FreeStreamScales, Matching, StructureModel};
 use crate::geometry::dimension;
 use crate::physics::atmosphere;
+use crate::problem::StreamRatio;
+use crate::record::flutter::{Bars, CaseReference};
 use crate::structure::flutter::Varied;
 
 /// Density of the standard atmosphere at sea level, kg/m³: that of equivalent airspeeds.
@@ -35,23 +34,6 @@ pub(super) struct Scales {
     pub(super) dimensional: bool,
     /// Number of space dimensions.
     pub(super) dimension: usize,
-}
-
-/// Stream and structure of the case at a Mach number, which ratios refer to.
-#[derive(Clone, Debug, Default, Serialize, Deserialize)]
-pub struct CaseReference {
-    /// Speed in the units of the case.
-    pub speed: f64,
-    /// Density in the units of the case.
-    pub density: f64,
-    /// Dynamic pressure in the units of the case.
-    pub dynamic_pressure: f64,
-    /// V_f, where the structure has one.
-    pub speed_index: Option<f64>,
-    /// V*, where the structure has one.
-    pub reduced_speed: Option<f64>,
-    /// Mass ratio, where the structure is a section.
-    pub mass_ratio: Option<f64>,
 }
 
 /// The stream at one value of what is varied.
@@ -233,6 +215,7 @@ impl Scales {
 
 #[cfg(test)]
 mod tests {
+    use super::super::held::problem_of;
     use super::*;
 
     fn scales(flow: &str, matching: Matching) -> Scales {
@@ -240,7 +223,7 @@ mod tests {
             "[flow]\nmach = 0.5\n{flow}[[body]]\nnaca = \"0012\"\n[cloud]\nspacing = 0.1\n[structure]\nelastic_axis = -0.4\n\
              mass_ratio = 30\nx_alpha = 0.2\nr_alpha2 = 0.25\nfrequency_ratio = 0.4\nspeed_index = 2.0\n[flutter]\n"
         );
-        Scales::of(&crate::case::read(&text, "case.toml").unwrap().flutter_case(0.5), 1.0, matching)
+        Scales::of(problem_of(&text).about_steady_flow(0.5).unwrap().case(), 1.0, matching)
     }
 
     const AIR: &str = "pressure = \"101325 Pa\"\ntemperature = \"288.15 K\"\n";

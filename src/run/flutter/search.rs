@@ -5,15 +5,17 @@ use num_complex::Complex64;
 
 use super::super::record::Log;
 use super::super::studies::{ForceSource, Forces, in_order};
-use super::held::{Held, Mark, Translation};
-use super::record::{FlutterAt, Warning, remedy};
-use super::rows::{Bars, FlutterRow, MotionRow};
+use super::held::{Held, Translation};
 use super::scales::Scales;
-use super::shapes::{NaturalMode, shares};
-use super::state_space::StateSpaceAt;
-use super::wall_motion::{Pressures, WallMotion};
-use crate::case::{Flutter as Plan, StreamRatio};
+use super::shapes::shares;
+use super::state_space::state_space;
+use super::wall_motion::{Pressures, wall_motion};
+use crate::case::Flutter as Plan;
 use crate::math::rational::Rational;
+use crate::problem::StreamRatio;
+use crate::record::flutter::{
+    Bars, FlutterAt, FlutterRow, Mark, MotionRow, NaturalMode, StateSpaceAt, Warning, remedy,
+};
 use crate::structure::flutter::{Branch, Crossing, Flutter, Kind, Point, StillMotions};
 use crate::structure::{Matrices, Spring};
 
@@ -181,7 +183,7 @@ impl<'a> Search<'a> {
         let walls = source.walls();
         for row in &mut found.crossings {
             let motion = (self.scales.angular_frequency(row.reduced_frequency), self.scales.stream);
-            row.walls = WallMotion::of(&walls, (&row.shape, &self.units), &self.pressures, motion);
+            row.walls = wall_motion(&walls, (&row.shape, &self.units), &self.pressures, motion);
         }
     }
 
@@ -311,7 +313,7 @@ impl<'a> Search<'a> {
         let first = moving().find(|c| c.kind == Kind::Flutter).or(moving().next());
         let stream = first.map_or_else(|| self.scales.at(1.0), |c| self.scales.at(c.x));
         let last = self.samples.last().map_or(0.0, |s| s.0);
-        let system = || StateSpaceAt::of((&self.matrices, &self.names), &forces, last, (&stream, self.scales));
+        let system = || state_space((&self.matrices, &self.names), &forces, last, (&stream, self.scales));
         (found, self.plan.state_space.then(system).flatten())
     }
 

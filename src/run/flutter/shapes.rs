@@ -1,28 +1,7 @@
 //! Shapes of motions in numbers for people: how much each coordinate takes part, and when.
 use num_complex::Complex64;
-use serde::{Deserialize, Serialize};
 
-/// The part of a coordinate in a motion e^{iωt}.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Share {
-    /// Its name.
-    pub coordinate: String,
-    /// Amplitude over the largest: of angles in radians, of displacements of rigid bodies in b, of modes in what their files have.
-    pub amplitude: f64,
-    /// Phase in degrees by which it is ahead of the largest, from −180 to 180.
-    pub phase_deg: f64,
-}
-
-/// A natural mode in still air.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct NaturalMode {
-    /// Its number, from 1.
-    pub mode: usize,
-    /// Cycles per unit of time of the case.
-    pub frequency: f64,
-    /// Its shape.
-    pub shape: Vec<Share>,
-}
+use crate::record::flutter::Share;
 
 /// A shape of coordinates `names`, whose amplitudes are counted in `units`: the largest is 1 and has the phase 0.
 pub(super) fn shares(names: &[String], units: &[f64], shape: &[Complex64]) -> Vec<Share> {
@@ -43,7 +22,7 @@ pub(super) fn shares(names: &[String], units: &[f64], shape: &[Complex64]) -> Ve
 
 /// The amplitudes that shares stand for.
 pub(super) fn amplitudes(shares: &[Share]) -> Vec<Complex64> {
-    shares.iter().map(|s| Complex64::from_polar(s.amplitude, s.phase_deg.to_radians())).collect()
+    shares.iter().map(Share::phasor).collect()
 }
 
 #[cfg(test)]

@@ -9,21 +9,17 @@ use std::path::Path;
 use num_complex::Complex64;
 use serde::Serialize;
 
-use super::super::error::RunError;
 use super::super::folder::make_within;
-use super::super::look::reference::chord;
-use super::super::setup;
-use super::rows::FlutterRow;
-use super::shapes::{Share, amplitudes};
-use super::wall_motion::WallMotion;
-use crate::case::Case;
+use super::shapes::amplitudes;
 use crate::coupling::Attached;
-use crate::geometry::{Surface, dimension};
+use crate::geometry::Surface;
 use crate::math::Vector;
 use crate::math::rotation::cross;
-use crate::motion::Motions;
 use crate::observe::vtk::{About, Column, Facets, write_collection, write_surface};
 use crate::observe::write_atomic;
+use crate::problem::reference::chord;
+use crate::problem::{Problem, ProblemIn, RunError};
+use crate::record::flutter::{FlutterRow, Share, WallMotion};
 
 /// Largest displacement that is drawn, over the chord.
 const SHOWN: f64 = 0.1;
@@ -61,20 +57,17 @@ struct Told<'a> {
 }
 
 impl Skin {
-    /// That of the bodies of a case, whose files lie in `input`; coordinates are counted in `units`.
-    pub(super) fn of(case: &Case, input: &Path, units: &[f64]) -> Result<Self, RunError> {
-        match dimension(case) {
-            2 => Self::within::<2>(case, input, units),
-            _ => Self::within::<3>(case, input, units),
+    /// That of the bodies of a problem; coordinates are counted in `units`.
+    pub(super) fn of(problem: &Problem, units: &[f64]) -> Self {
+        match problem {
+            Problem::Plane(problem) => Self::within(problem, units),
+            Problem::Space(problem) => Self::within(problem, units),
         }
     }
 
-    fn within<const D: usize>(case: &Case, input: &Path, units: &[f64]) -> Result<Self, RunError> {
-        let surface = setup::surface::<D>(case, input)?.0;
-        let mut motions = Motions::<D>::fixed(case.bodies.len());
-        let bodies = setup::bodies(case, input, surface.as_ref(), &mut motions)?;
-        let Some(surface) = surface else { return Ok(Self::default()) };
-        let mut skin = Self { chord: chord(case, Some(&surface)), ..Self::default() };
+    fn within<const D: usize>(problem: &ProblemIn<D>, units: &[f64]) -> Self {
+        let Some(surface) = problem.surface() else { return Self::default() };
+        let mut skin = Self { chord: chord(problem.case(), Some(surface)), ..Self::default() };
         skin.points = surface.vertices.iter().map(Vector::to_3d).collect();
         for element in &surface.elements {
             match element.vertices[..] {
@@ -83,11 +76,11 @@ impl Skin {
                 _ => {}
             }
         }
-        for body in &bodies {
+        for body in problem.structures() {
             skin.coordinates.extend(body.structure.coordinates().iter().map(|c| c.name.clone()));
-            skin.moves.extend(moves(&surface, body, units));
+            skin.moves.extend(moves(surface, body, units));
         }
-        Ok(skin)
+        skin
     }
 
     /// Displacements in a motion, so large that the largest over a period is that shown.
@@ -271,8 +264,9 @@ fn greatest(d: &[Complex64; 3]) -> f64 {
 
 #[cfg(test)]
 mod tests {
+    use super::super::super::about;
+    use super::super::held::problem_of;
     use super::*;
-    use crate::case::read;
 
     const CASE: &str = "[flow]\nmach = 0.5\n[[body]]\nnaca = \"0012\"\n[cloud]\nspacing = 0.1\n[flutter]\n[structure]\nelastic_axis = -0.4\n\
                         mass_ratio = 60\nx_alpha = 0.2\nr_alpha2 = 0.25\nfrequency_ratio = 0.5\nreduced_speed = 2\n";
@@ -283,8 +277,8 @@ mod tests {
 
     #[test]
     fn a_section_turns_about_its_axis_and_goes_up() {
-        let case = read(CASE, "case.toml").unwrap();
-        let skin = Skin::of(&case, Path::new(""), &[0.5, 1.0]).unwrap();
+        let problem = problem_of(CASE);
+        let skin = Skin::of(&problem, &[0.5, 1.0]);
         assert_eq!(skin.coordinates, ["plunge", "pitch"]);
         for (x, [up, turn]) in skin.points.iter().zip(skin.moves[0].iter().zip(&skin.moves[1]).map(|(a, b)| [a, b])) {
             assert_eq!(*up, [0.0, 0.5, 0.0]);
@@ -298,12 +292,12 @@ mod tests {
 
     #[test]
     fn a_motion_becomes_a_series_and_a_table_for_the_page() {
-        let case = read(CASE, "case.toml").unwrap();
-        let skin = Skin::of(&case, Path::new(""), &[0.5, 1.0]).unwrap();
+        let problem = problem_of(CASE);
+        let skin = Skin::of(&problem, &[0.5, 1.0]);
         let folder = tempfile::tempdir().unwrap();
         let shape = [share("plunge", 1.0, 0.0), share("pitch", 0.4, 90.0)];
         let mut row = FlutterRow { frequency: 2.0, shape: shape.to_vec(), ..FlutterRow::default() };
-        let named = ("flutter-mode-mach-0.500", &About::gas(&case, "cp_unsteady", None));
+        let named = ("flutter-mode-mach-0.500", &about::gas(problem.case(), "cp_unsteady", None));
         skin.write_series(folder.path(), named, &row).unwrap();
         let text = std::fs::read_to_string(folder.path().join("flutter-mode-mach-0.500.pvd")).unwrap();
         let listed = crate::observe::vtk::read_collection(&text);

@@ -2,12 +2,12 @@
 use std::path::Path;
 
 use num_complex::Complex64;
-use serde::{Deserialize, Serialize};
 use serde_json::json;
 
-use super::super::error::RunError;
 use super::scales::{Scales, Stream};
 use crate::observe::table::{Entry, write_csv, write_json};
+use crate::problem::RunError;
+use crate::record::flutter::StateSpaceAt;
 use crate::structure::Matrices;
 use crate::structure::flutter::state_space::Roger;
 
@@ -18,95 +18,62 @@ const CONVENTIONS: &str = "x' = A x + B f, y = C x + D f in the units of the cas
                            other speeds: (M - p/u^2 A2) q'' = -(K - p A0) q - (C - p/u A1) q' + p sum B_l r_l, u and p speed and \
                            dynamic pressure over those of the case";
 
-/// A system at one speed.
-#[derive(Clone, Debug, Serialize, Deserialize)]
-pub struct StateSpaceAt {
-    /// Signs and units.
-    pub conventions: String,
-    /// Speed over that of the case.
-    pub speed_ratio: f64,
-    /// Speed in the units of the case.
-    pub speed: f64,
-    /// Density in the units of the case.
-    pub density: f64,
-    /// Worst misfit of the forces, over the largest modulus of an entry.
-    pub misfit: f64,
-    /// Names of the states.
-    pub states: Vec<String>,
-    /// Names of the forces.
-    pub inputs: Vec<String>,
-    /// Names of what is seen.
-    pub outputs: Vec<String>,
-    /// A, B, C and D, row by row.
-    pub a: Vec<Vec<f64>>,
-    /// B.
-    pub b: Vec<Vec<f64>>,
-    /// C.
-    pub c: Vec<Vec<f64>>,
-    /// D.
-    pub d: Vec<Vec<f64>>,
-    /// What it is made from, for other speeds.
-    pub parts: serde_json::Value,
+/// The system of a structure with the forces that are known up to the angular frequency `highest`.
+pub(super) fn state_space(
+    (structure, names): (&Matrices, &[String]),
+    forces: &dyn Fn(f64) -> Vec<Complex64>,
+    highest: f64,
+    (stream, scales): (&Stream, &Scales),
+) -> Option<StateSpaceAt> {
+    let n = names.len();
+    let roger = Roger::fit(forces, highest)?;
+    let system = roger.system(structure, stream.speed, stream.pressure)?.in_units(n, scales.rate, scales.force);
+    let rows = |a: &[f64], width: usize| a.chunks_exact(width).map(<[f64]>::to_vec).collect::<Vec<_>>();
+    let rates = || names.iter().map(|name| format!("{name}_rate"));
+    let lags = (0..roger.lags.len()).flat_map(|l| names.iter().map(move |name| format!("{name}_lag_{}", l + 1)));
+    let outputs: Vec<String> = names.iter().cloned().chain(rates()).collect();
+    let [still, first, second] = roger.polynomial.each_ref().map(|a| rows(a, n));
+    let parts = json!({
+        "mass": rows(&structure.mass, n),
+        "damping": rows(&structure.damping, n),
+        "stiffness": rows(&structure.stiffness, n),
+        "a0": still,
+        "a1": first,
+        "a2": second,
+        "lags": roger.lags,
+        "lagged": roger.lagged.iter().map(|b| rows(b, n)).collect::<Vec<_>>(),
+    });
+    Some(StateSpaceAt {
+        conventions: CONVENTIONS.to_owned(),
+        speed_ratio: stream.speed,
+        speed: scales.reference.speed * stream.speed,
+        density: scales.reference.density * stream.pressure / (stream.speed * stream.speed),
+        misfit: roger.misfit,
+        states: outputs.iter().cloned().chain(lags).collect(),
+        inputs: names.to_vec(),
+        outputs,
+        a: rows(&system.a, system.states),
+        b: rows(&system.b, n),
+        c: rows(&system.c, system.states),
+        d: rows(&system.d, n),
+        parts,
+    })
 }
 
-impl StateSpaceAt {
-    /// The system of a structure with the forces that are known up to the angular frequency `highest`.
-    pub(super) fn of(
-        (structure, names): (&Matrices, &[String]),
-        forces: &dyn Fn(f64) -> Vec<Complex64>,
-        highest: f64,
-        (stream, scales): (&Stream, &Scales),
-    ) -> Option<Self> {
-        let n = names.len();
-        let roger = Roger::fit(forces, highest)?;
-        let system = roger.system(structure, stream.speed, stream.pressure)?.in_units(n, scales.rate, scales.force);
-        let rows = |a: &[f64], width: usize| a.chunks_exact(width).map(<[f64]>::to_vec).collect::<Vec<_>>();
-        let rates = || names.iter().map(|name| format!("{name}_rate"));
-        let lags = (0..roger.lags.len()).flat_map(|l| names.iter().map(move |name| format!("{name}_lag_{}", l + 1)));
-        let outputs: Vec<String> = names.iter().cloned().chain(rates()).collect();
-        let [still, first, second] = roger.polynomial.each_ref().map(|a| rows(a, n));
-        let parts = json!({
-            "mass": rows(&structure.mass, n),
-            "damping": rows(&structure.damping, n),
-            "stiffness": rows(&structure.stiffness, n),
-            "a0": still,
-            "a1": first,
-            "a2": second,
-            "lags": roger.lags,
-            "lagged": roger.lagged.iter().map(|b| rows(b, n)).collect::<Vec<_>>(),
-        });
-        Some(Self {
-            conventions: CONVENTIONS.to_owned(),
-            speed_ratio: stream.speed,
-            speed: scales.reference.speed * stream.speed,
-            density: scales.reference.density * stream.pressure / (stream.speed * stream.speed),
-            misfit: roger.misfit,
-            states: outputs.iter().cloned().chain(lags).collect(),
-            inputs: names.to_vec(),
-            outputs,
-            a: rows(&system.a, system.states),
-            b: rows(&system.b, n),
-            c: rows(&system.c, system.states),
-            d: rows(&system.d, n),
-            parts,
-        })
+/// Writes `state-space-mach-….json` and a table for each matrix.
+pub(super) fn write(system: &StateSpaceAt, mach: f64, out: &Path) -> Result<(), RunError> {
+    let name = format!("state-space-mach-{mach:.3}");
+    write_json(&out.join(format!("{name}.json")), system)?;
+    let all = [
+        ("a", &system.a, &system.states),
+        ("b", &system.b, &system.inputs),
+        ("c", &system.c, &system.states),
+        ("d", &system.d, &system.inputs),
+    ];
+    for (letter, rows, columns) in all {
+        let columns: Vec<&str> = columns.iter().map(String::as_str).collect();
+        let rows = rows.iter().map(|row| row.iter().map(|x| Entry::from(*x)).collect());
+        write_csv(&out.join(format!("{name}-{letter}.csv")), &columns, rows)?;
     }
-
-    /// Writes `state-space-mach-….json` and a table for each matrix.
-    pub(super) fn write(&self, mach: f64, out: &Path) -> Result<(), RunError> {
-        let name = format!("state-space-mach-{mach:.3}");
-        write_json(&out.join(format!("{name}.json")), self)?;
-        let all = [
-            ("a", &self.a, &self.states),
-            ("b", &self.b, &self.inputs),
-            ("c", &self.c, &self.states),
-            ("d", &self.d, &self.inputs),
-        ];
-        for (letter, rows, columns) in all {
-            let columns: Vec<&str> = columns.iter().map(String::as_str).collect();
-            let rows = rows.iter().map(|row| row.iter().map(|x| Entry::from(*x)).collect());
-            write_csv(&out.join(format!("{name}-{letter}.csv")), &columns, rows)?;
-        }
-        Ok(())
-    }
+    Ok(())
 }

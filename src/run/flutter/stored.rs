@@ -4,9 +4,10 @@ use std::path::Path;
 use num_complex::Complex64;
 use serde::Deserialize;
 
-use super::super::error::RunError;
-use super::super::folder;
-use super::held::{Held, Mark};
+use super::held::Held;
+use crate::problem::RunError;
+use crate::problem::files;
+use crate::record::flutter::Mark;
 
 /// Part by which Mach numbers and chords may differ, and angles in degrees.
 const SAME: f64 = 1e-6;
@@ -80,7 +81,7 @@ impl Stored {
         let wrong =
             |what: String| unfit(&file, &what, "give `flutter.json` of `alula flutter`, or `gaf.json` of `alula gaf`");
         let (place, name) = (path.parent().unwrap_or(Path::new("")), path.file_name().unwrap_or_default());
-        let text = folder::text(place, &name.to_string_lossy()).map_err(|e| wrong(format!("cannot be read: {e}")))?;
+        let text = files::text(place, &name.to_string_lossy()).map_err(|e| wrong(format!("cannot be read: {e}")))?;
         let value: serde_json::Value = serde_json::from_str(&text).map_err(|e| wrong(format!("is no JSON: {e}")))?;
         let all = if value.get("flutter").is_some() {
             serde_json::from_value::<OfFlutter>(value).map(|f| f.flutter)

@@ -1,11 +1,10 @@
 //! The tables of `alula flutter`, and what their columns hold.
 use std::path::Path;
 
-use super::super::error::RunError;
-use super::record::Boundary;
-use super::rows::{Doubt, FlutterRow, MotionRow};
-use crate::observe::columns::{Scale, describe_tables};
+use crate::observe::columns::{self, Scale};
 use crate::observe::table::{Entry, write_csv};
+use crate::problem::RunError;
+use crate::record::flutter::{Boundary, Doubt, FlutterRow, MotionRow};
 
 /// Their names.
 const CROSSINGS: &str = "flutter.csv";
@@ -101,55 +100,53 @@ const HISTORY_COLUMNS: [&str; 15] = [
     "equivalent_airspeed",
 ];
 
-impl Boundary {
-    /// Writes all tables into a folder.
-    pub(super) fn write_tables(&self, out: &Path) -> Result<(), RunError> {
-        let crossings = self.flutter.iter().flat_map(|at| at.crossings.iter().map(|c| crossing(at.mach, c)));
-        write_csv(&out.join(CROSSINGS), &CROSSING_COLUMNS, crossings)?;
-        let motions = self.flutter.iter().flat_map(|at| at.motions.iter().map(|m| motion(at.mach, m)));
-        write_csv(&out.join(HISTORY), &HISTORY_COLUMNS, motions)?;
-        if self.flutter.iter().any(|at| !at.doubts.is_empty()) {
-            let doubts = self.flutter.iter().flat_map(|at| at.doubts.iter().map(|d| doubt(at.mach, d)));
-            write_csv(&out.join(DOUBTS), &DOUBT_COLUMNS, doubts)?;
-        }
-        if !self.lco.is_empty() {
-            self.write_cycles(&out.join(CYCLES))?;
-        }
-        Ok(())
+/// Writes all tables into a folder.
+pub(super) fn write_tables(boundary: &Boundary, out: &Path) -> Result<(), RunError> {
+    let crossings = boundary.flutter.iter().flat_map(|at| at.crossings.iter().map(|c| crossing(at.mach, c)));
+    write_csv(&out.join(CROSSINGS), &CROSSING_COLUMNS, crossings)?;
+    let motions = boundary.flutter.iter().flat_map(|at| at.motions.iter().map(|m| motion(at.mach, m)));
+    write_csv(&out.join(HISTORY), &HISTORY_COLUMNS, motions)?;
+    if boundary.flutter.iter().any(|at| !at.doubts.is_empty()) {
+        let doubts = boundary.flutter.iter().flat_map(|at| at.doubts.iter().map(|d| doubt(at.mach, d)));
+        write_csv(&out.join(DOUBTS), &DOUBT_COLUMNS, doubts)?;
     }
+    if !boundary.lco.is_empty() {
+        write_cycles(boundary, &out.join(CYCLES))?;
+    }
+    Ok(())
+}
 
-    /// Writes what the columns of the tables hold.
-    pub(super) fn describe_tables(&self, out: &Path) -> Result<(), RunError> {
-        let Some(at) = self.flutter.first() else { return Ok(()) };
-        let scale = Scale { dimensional: at.dimensional, dimension: at.dimension };
-        Ok(describe_tables(out, scale, &[])?)
-    }
+/// Writes what the columns of the tables hold.
+pub(super) fn describe_tables(boundary: &Boundary, out: &Path) -> Result<(), RunError> {
+    let Some(at) = boundary.flutter.first() else { return Ok(()) };
+    let scale = Scale { dimensional: at.dimensional, dimension: at.dimension };
+    Ok(columns::describe_tables(out, scale, &[])?)
+}
 
-    fn write_cycles(&self, file: &Path) -> Result<(), RunError> {
-        let rows = self.lco.iter().map(|c| {
-            vec![
-                Entry::from(c.mach),
-                Entry::from(c.branch as f64),
-                Entry::from(c.coordinate.as_str()),
-                Entry::from(c.amplitude),
-                Entry::from(c.speed_ratio),
-                number(c.speed_index),
-                number(c.reduced_speed),
-                Entry::from(c.speed),
-                Entry::from(c.reduced_frequency),
-                Entry::from(c.frequency),
-                Entry::from(if c.stable { "stable" } else { "unstable" }),
-                Entry::from(c.mean),
-                Entry::from(c.harmonics as f64),
-                Entry::from(c.error),
-                Entry::from(c.balances as f64),
-                Entry::from(c.density),
-                Entry::from(c.dynamic_pressure),
-                number(c.altitude),
-            ]
-        });
-        Ok(write_csv(file, &CYCLE_COLUMNS, rows)?)
-    }
+fn write_cycles(boundary: &Boundary, file: &Path) -> Result<(), RunError> {
+    let rows = boundary.lco.iter().map(|c| {
+        vec![
+            Entry::from(c.mach),
+            Entry::from(c.branch as f64),
+            Entry::from(c.coordinate.as_str()),
+            Entry::from(c.amplitude),
+            Entry::from(c.speed_ratio),
+            number(c.speed_index),
+            number(c.reduced_speed),
+            Entry::from(c.speed),
+            Entry::from(c.reduced_frequency),
+            Entry::from(c.frequency),
+            Entry::from(if c.stable { "stable" } else { "unstable" }),
+            Entry::from(c.mean),
+            Entry::from(c.harmonics as f64),
+            Entry::from(c.error),
+            Entry::from(c.balances as f64),
+            Entry::from(c.density),
+            Entry::from(c.dynamic_pressure),
+            number(c.altitude),
+        ]
+    });
+    Ok(write_csv(file, &CYCLE_COLUMNS, rows)?)
 }
 
 fn number(x: Option<f64>) -> Entry {

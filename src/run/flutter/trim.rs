@@ -3,12 +3,13 @@
 //! The equilibrium goes with the stream, and the first crossing with the equilibrium: both are found in turn, from the stream of the case,
 //! until the crossing stays where its equilibrium was sought. Springs that become much stiffer or softer under load make it leap from one side
 //! to the other: between the two the false position is taken (Illinois, Dowell and Jarratt 1971, doi:10.1007/BF01934364).
-use super::super::error::RunError;
 use super::super::monitor::{Monitor, Within};
 use super::super::time_left::Portion;
-use super::record::{FlutterAt, Trim, remedy};
 use super::scales::Scales;
-use crate::case::{Flutter as Plan, Matching, StreamRatio};
+use crate::case::{Flutter as Plan, Matching};
+use crate::problem::RunError;
+use crate::problem::StreamRatio;
+use crate::record::flutter::{FlutterAt, Trim, remedy};
 
 /// Equilibria that are sought at most.
 const ROUNDS: usize = 12;
@@ -115,11 +116,9 @@ fn first(at: &FlutterAt, scales: &Scales) -> Option<f64> {
 
 #[cfg(test)]
 mod tests {
-    use std::f64::consts::{PI, TAU};
-    use std::path::Path;
-
-    use super::super::held::Held;
+    use super::super::held::{Held, problem_of};
     use super::*;
+    use std::f64::consts::{PI, TAU};
 
     #[test]
     fn equilibria_that_leap_over_their_crossing_are_found() {
@@ -153,10 +152,7 @@ mod tests {
             0.4 * pitch
         );
         for stream in [StreamRatio::SAME, StreamRatio { pressure: 2.0, temperature: 1.3 }] {
-            let [a, b] = [&plain, &units].map(|text| {
-                let case = crate::case::read(text, "case.toml").unwrap_or_else(|e| panic!("{e}"));
-                Held::of(&case.in_stream(stream), Path::new("")).unwrap().matrices
-            });
+            let [a, b] = [&plain, &units].map(|text| Held::of(&problem_of(text).in_stream(stream).unwrap()).matrices);
             for (a, b) in [(&a.mass, &b.mass), (&a.damping, &b.damping), (&a.stiffness, &b.stiffness)] {
                 let size = b.iter().fold(0.0f64, |m, x| m.max(x.abs()));
                 assert!(a.iter().zip(b).all(|(a, b)| (a - b).abs() < 1e-6 * size), "{a:?} {b:?}");

@@ -4,59 +4,42 @@
 //! Δp = Σ q̂_k p̂_k(ω), where p̂_k is what the linear system of the gas has for coordinate k at this frequency. Between two frequencies
 //! at which the gas was solved, p̂_k is taken to be linear.
 use num_complex::Complex64;
-use serde::{Deserialize, Serialize};
 
 use super::super::studies::MovingWalls;
-use super::shapes::{Share, amplitudes};
+use super::shapes::amplitudes;
+use crate::record::flutter::{Share, WallMotion};
 
 /// The pressures of one frequency: of each coordinate those of all wall particles, in units of the solver.
 pub(super) type Pressures = (f64, Vec<Vec<Complex64>>);
 
-/// Wall particles in one motion.
-#[derive(Clone, Debug, Default, Serialize, Deserialize)]
-pub struct WallMotion {
-    /// Places at rest.
-    pub(super) points: Vec<[f64; 3]>,
-    /// Outlines in the plane.
-    pub(super) lines: Vec<Vec<u32>>,
-    /// Triangles in space.
-    pub(super) triangles: Vec<[u32; 3]>,
-    /// Displacement of each: real and imaginary part along each axis.
-    pub(super) displacement: Vec<[[f64; 2]; 3]>,
-    /// Unsteady pressure over the dynamic pressure of the stream: real and imaginary part.
-    pub(super) cp: Vec<[f64; 2]>,
-}
-
-impl WallMotion {
-    /// The motion of the shape `shape`, whose coordinates are counted in `units`, at the angular frequency `omega` in a stream of the
-    /// Mach number `mach`; `None` where no pressures are known, or walls whose cloud is too large to be drawn.
-    pub(super) fn of(
-        walls: &MovingWalls,
-        (shape, units): (&[Share], &[f64]),
-        known: &[Pressures],
-        (omega, mach): (f64, f64),
-    ) -> Option<Self> {
-        if walls.lines.is_empty() && walls.triangles.is_empty() {
-            return None;
-        }
-        let [(low, below), (high, above)] = around(known, omega)?;
-        let part = if high > low { ((omega - low) / (high - low)).clamp(0.0, 1.0) } else { 0.0 };
-        let q: Vec<Complex64> = amplitudes(shape).iter().zip(units).map(|(q, unit)| q * unit).collect();
-        let sum = |of: &dyn Fn(usize) -> Complex64| q.iter().enumerate().map(|(k, q)| q * of(k)).sum::<Complex64>();
-        let parts = |z: Complex64| [z.re, z.im];
-        // ρ∞ = a∞ = 1 in the solver
-        let dynamic = 0.5 * mach * mach;
-        let pressure = |w: usize| sum(&|k| (below[k][w] * (1.0 - part) + above[k][w] * part) / dynamic);
-        let moved = |w: usize, d: usize| sum(&|k| Complex64::from(walls.moves[k][w][d]));
-        let n = walls.points.len();
-        Some(Self {
-            points: walls.points.clone(),
-            lines: walls.lines.clone(),
-            triangles: walls.triangles.clone(),
-            displacement: (0..n).map(|w| [0, 1, 2].map(|d| parts(moved(w, d)))).collect(),
-            cp: (0..n).map(|w| parts(pressure(w))).collect(),
-        })
+/// The motion of the shape `shape`, whose coordinates are counted in `units`, at the angular frequency `omega` in a stream of the
+/// Mach number `mach`; `None` where no pressures are known, or walls whose cloud is too large to be drawn.
+pub(super) fn wall_motion(
+    walls: &MovingWalls,
+    (shape, units): (&[Share], &[f64]),
+    known: &[Pressures],
+    (omega, mach): (f64, f64),
+) -> Option<WallMotion> {
+    if walls.lines.is_empty() && walls.triangles.is_empty() {
+        return None;
     }
+    let [(low, below), (high, above)] = around(known, omega)?;
+    let part = if high > low { ((omega - low) / (high - low)).clamp(0.0, 1.0) } else { 0.0 };
+    let q: Vec<Complex64> = amplitudes(shape).iter().zip(units).map(|(q, unit)| q * unit).collect();
+    let sum = |of: &dyn Fn(usize) -> Complex64| q.iter().enumerate().map(|(k, q)| q * of(k)).sum::<Complex64>();
+    let parts = |z: Complex64| [z.re, z.im];
+    // ρ∞ = a∞ = 1 in the solver
+    let dynamic = 0.5 * mach * mach;
+    let pressure = |w: usize| sum(&|k| (below[k][w] * (1.0 - part) + above[k][w] * part) / dynamic);
+    let moved = |w: usize, d: usize| sum(&|k| Complex64::from(walls.moves[k][w][d]));
+    let n = walls.points.len();
+    Some(WallMotion {
+        points: walls.points.clone(),
+        lines: walls.lines.clone(),
+        triangles: walls.triangles.clone(),
+        displacement: (0..n).map(|w| [0, 1, 2].map(|d| parts(moved(w, d)))).collect(),
+        cp: (0..n).map(|w| parts(pressure(w))).collect(),
+    })
 }
 
 /// A frequency, and the pressures of every coordinate on the walls.
@@ -85,13 +68,13 @@ mod tests {
         let known = [at(0.0, 1.0), at(1.0, 3.0)];
         let share = |amplitude, phase_deg| Share { coordinate: String::new(), amplitude, phase_deg };
         let shape = [share(1.0, 0.0), share(0.5, 90.0)];
-        let found = WallMotion::of(&walls, (&shape, &[0.5, 1.0]), &known, (0.25, 2.0)).unwrap();
+        let found = wall_motion(&walls, (&shape, &[0.5, 1.0]), &known, (0.25, 2.0)).unwrap();
         // q = (0.5, 0.5i), p between 1 and 3 a quarter of the way, over ½ M² = 2
         let expected = (0.5 * 1.5 - 0.5 * 1.5) / 2.0;
         assert!(found.cp.iter().all(|cp| (cp[0] - expected).abs() < 1e-15 && cp[1].abs() < 1e-15), "{:?}", found.cp);
         assert!((found.displacement[1][1][0] - 0.5).abs() < 1e-15 && (found.displacement[1][1][1] + 0.5).abs() < 1e-15);
-        let beyond = WallMotion::of(&walls, (&shape[..1], &[1.0]), &known, (5.0, 2.0)).unwrap();
+        let beyond = wall_motion(&walls, (&shape[..1], &[1.0]), &known, (5.0, 2.0)).unwrap();
         assert_eq!(beyond.cp[0], [1.5, 0.0]);
-        assert!(WallMotion::of(&walls, (&shape, &[0.5, 1.0]), &[], (0.25, 2.0)).is_none());
+        assert!(wall_motion(&walls, (&shape, &[0.5, 1.0]), &[], (0.25, 2.0)).is_none());
     }
 }

@@ -1,17 +1,16 @@
 //! A column of the matrix by harmonic balance, with the amplitude of `[gaf]` and half of it, and on a cloud with twice the spacing.
-use std::path::Path;
 
 use num_complex::Complex64;
 
-use super::super::at_end::Outcome;
-use super::super::error::RunError;
 use super::super::monitor::{Monitor, Quiet};
-use super::super::one_cloud::{COARSER, coarser};
+use super::super::outcome::Outcome;
 use super::super::record::summary::Summary;
 use super::super::session::Session;
 use super::cloud_error;
 use super::record::{Column, Matrices};
-use crate::case::{AnyMode, Case, Cloud, Gaf, Mode};
+use crate::case::{AnyMode, Cloud, Gaf, Mode};
+use crate::problem::coarser::COARSER;
+use crate::problem::{Problem, RunError};
 
 /// Part of the amplitude of `[gaf]` that a column is computed with once more.
 const HALF: f64 = 0.5;
@@ -19,8 +18,7 @@ const HALF: f64 = 0.5;
 /// Finds the columns of all modes and frequencies of `plan` with their error bars, and calls `keep` after each; false when the monitor
 /// says stop.
 pub(super) fn columns(
-    (case, plan): (&Case, &Gaf),
-    input: &Path,
+    (problem, plan): (&Problem, &Gaf),
     matrices: &mut Matrices,
     keep: &mut dyn FnMut(&Matrices) -> Result<(), RunError>,
     monitor: &mut dyn Monitor,
@@ -29,9 +27,9 @@ pub(super) fn columns(
     for &k in &plan.reduced_frequencies {
         for mode in plan.all_modes() {
             let swing = Swing { plan, mode, k };
-            let own = |factor: f64| case.gaf_case(plan, mode, k, factor);
-            let Some((whole, cloud)) = swing.solved(&own(1.0), 1.0, input, monitor)? else { return Ok(false) };
-            let Some((half, _)) = swing.solved(&own(HALF), HALF, input, monitor)? else { return Ok(false) };
+            let own = |factor: f64| problem.in_motion_of_gaf(plan, mode, k, factor);
+            let Some((whole, cloud)) = swing.solved(own(1.0)?, 1.0, monitor)? else { return Ok(false) };
+            let Some((half, _)) = swing.solved(own(HALF)?, HALF, monitor)? else { return Ok(false) };
             let column = swing.column(&whole, Some(&half));
             monitor.note(&format!(
                 "k = {k}, {}: Cl {:+.4} {:+.4}i, Cm {:+.4} {:+.4}i, halved amplitude changes {:.2} %",
@@ -52,7 +50,7 @@ pub(super) fn columns(
             }
             matrices.columns.push(column);
             keep(matrices)?;
-            match swing.on_coarser(&Case { cloud, accuracy: None, ..own(1.0) }, input, monitor)? {
+            match swing.on_coarser(&own(1.0)?.on_cloud(cloud)?, monitor)? {
                 Asked::Stopped => return Ok(false),
                 Asked::Told(column) => coarse.push(*column),
                 Asked::Silent => {}
@@ -91,14 +89,8 @@ enum Asked {
 
 impl Swing<'_> {
     /// Loads with `factor` times the amplitude of `[gaf]` and the cloud that they were found on; `None` when the monitor says stop.
-    fn solved(
-        &self,
-        own: &Case,
-        factor: f64,
-        input: &Path,
-        monitor: &mut dyn Monitor,
-    ) -> Result<Option<(Swung, Cloud)>, RunError> {
-        let mut session = Session::open(own, input)?;
+    fn solved(&self, own: Problem, factor: f64, monitor: &mut dyn Monitor) -> Result<Option<(Swung, Cloud)>, RunError> {
+        let mut session = Session::of(own);
         let Outcome::Finished(summary) = session.solve(monitor)? else { return Ok(None) };
         let (cpu_seconds, converged) = (summary.cpu_seconds, summary.succeeded());
         let swung = Swung { loads: self.loads(&summary, factor)?, cpu_seconds, converged };
@@ -126,9 +118,16 @@ impl Swing<'_> {
     }
 
     /// The column of the case `own` on a cloud with twice the spacing.
-    fn on_coarser(&self, own: &Case, input: &Path, monitor: &mut dyn Monitor) -> Result<Asked, RunError> {
-        let Some(coarse) = coarser(own, COARSER).filter(|_| self.plan.cloud_error) else { return Ok(Asked::Silent) };
-        Ok(match self.solved(&coarse, 1.0, input, &mut Quiet { monitor }) {
+    fn on_coarser(&self, own: &Problem, monitor: &mut dyn Monitor) -> Result<Asked, RunError> {
+        if !self.plan.cloud_error {
+            return Ok(Asked::Silent);
+        }
+        let solved = match own.on_spacing(COARSER) {
+            Ok(None) => return Ok(Asked::Silent),
+            Ok(Some(coarse)) => self.solved(coarse, 1.0, &mut Quiet { monitor }),
+            Err(problem) => Err(problem),
+        };
+        Ok(match solved {
             Ok(Some((swung, _))) => Asked::Told(Box::new(self.column(&swung, None))),
             Ok(None) => Asked::Stopped,
             Err(problem) => {

@@ -3,37 +3,33 @@
 //! What the columns of harmonic balances tend to as their amplitudes go to nothing: one cloud, one steady flow, and a linear system for
 //! each mode and frequency (`studies::forces`); the same on coarser clouds tells how far they are known. Rigid
 //! modes are rotations and shifts, not displacement fields, so that forces of the steady flow turn with the body as they do there.
-use std::path::Path;
 
 use num_complex::Complex64;
 
-use super::super::accuracy::{self, Forces};
-use super::super::at_end::Outcome;
 use super::super::cost;
-use super::super::error::RunError;
+use super::super::flow::{self, Flow};
 use super::super::monitor::{Monitor, Quiet, Within};
-use super::super::one_cloud::{BETWEEN, COARSER, coarser, on_one_cloud, times_the_spacing};
-use super::super::record::Log;
 use super::super::record::summary::Clock;
-use super::super::session::Session;
+use super::super::solution::Solution;
 use super::super::studies::{ForceSource, SOLVED, in_order};
 use super::super::time_left::Portion;
 use super::cloud_error;
 use super::record::{Column, Matrices, Solved};
 use crate::case::{AnyMode, Case, Cloud, Gaf, Mode};
 use crate::geometry::dimension;
+use crate::problem::coarser::{BETWEEN, COARSER, coarser, times_the_spacing};
+use crate::problem::{Problem, RunError, spacing};
 
 /// Fills in the columns of all modes and frequencies of `plan` with their error bars, and calls `keep` after each frequency; false when
 /// the monitor says stop.
 pub(super) fn columns(
-    (case, plan): (&Case, &Gaf),
-    input: &Path,
+    (problem, plan): (&Problem, &Gaf),
     matrices: &mut Matrices,
     keep: &mut dyn FnMut(&Matrices) -> Result<(), RunError>,
     monitor: &mut dyn Monitor,
 ) -> Result<bool, RunError> {
-    let steady = on_one_cloud(case.gaf_steady_case(plan), input, Forces::Table)?;
-    let asked = Asked { case, plan, input, length: matrices.conditions.reduced_length };
+    let steady = problem.about_steady_flow_of_gaf(plan)?;
+    let asked = Asked { case: problem.given(), plan, length: matrices.conditions.reduced_length };
     let mut add = |found: Vec<Column>| {
         matrices.columns.extend(found);
         asked.sort(&mut matrices.columns);
@@ -41,19 +37,26 @@ pub(super) fn columns(
     };
     let part = |k: usize, shocks: bool| Portion::of(k, &asked.clouds(shocks));
     let found = asked.about(&steady, &mut add, &mut Within { outer: part(0, false), monitor: &mut *monitor })?;
-    let Some(Flow { cloud, solved, mut shocks }) = found else { return Ok(false) };
+    let Some(SteadyFlow { cloud, solved, mut shocks }) = found else { return Ok(false) };
     if !solved {
         monitor.warn("the steady flow did not converge: forces about it are doubtful");
         matrices.columns.iter_mut().for_each(|c| c.converged = false);
         keep(matrices)?;
     }
-    let one = Case { cloud, accuracy: None, ..steady };
+    let one = steady.on_cloud(cloud)?;
     let mut others = Vec::new();
     for ratio in [COARSER, BETWEEN] {
         if !plan.cloud_error || (ratio != COARSER && !shocks) {
             break;
         }
-        let Some(coarse) = coarser(&one, ratio) else { continue };
+        let coarse = match one.on_spacing(ratio) {
+            Ok(Some(coarse)) => coarse,
+            Ok(None) => continue,
+            Err(problem) => {
+                monitor.note(&format!("the coarser cloud tells nothing: {problem}"));
+                continue;
+            }
+        };
         monitor.note(&format!("the same on a cloud with {}", times_the_spacing(ratio)));
         let mut other = Vec::new();
         let mut add = |found: Vec<Column>| {
@@ -73,8 +76,8 @@ pub(super) fn columns(
             Err(problem) => monitor.note(&format!("the coarser cloud tells nothing: {problem}")),
         }
     }
-    if coarser(&one, COARSER).is_none() {
-        cloud_error::untold(plan, &one).iter().for_each(|why| monitor.note(why));
+    if coarser(one.given(), COARSER).is_none() {
+        cloud_error::untold(plan, one.given()).iter().for_each(|why| monitor.note(why));
     }
     cloud_error::tell(&mut matrices.columns, &others);
     keep(matrices)?;
@@ -82,7 +85,7 @@ pub(super) fn columns(
 }
 
 /// A steady flow that forces were found about.
-struct Flow {
+struct SteadyFlow {
     cloud: Cloud,
     /// True where it came to rest.
     solved: bool,
@@ -94,7 +97,6 @@ struct Flow {
 struct Asked<'a> {
     case: &'a Case,
     plan: &'a Gaf,
-    input: &'a Path,
     /// Length of reduced frequencies.
     length: f64,
 }
@@ -103,7 +105,7 @@ impl Asked<'_> {
     /// Work on the cloud of the case and on coarser ones, two of them where there are `shocks`, beside one another.
     fn clouds(&self, shocks: bool) -> [f64; 3] {
         let d = dimension(self.case).into();
-        let asked = |ratio: f64, asked: bool| if asked { accuracy::alike(ratio, d) } else { 0.0 };
+        let asked = |ratio: f64, asked: bool| if asked { spacing::alike(ratio, d) } else { 0.0 };
         [1.0, asked(COARSER, self.plan.cloud_error), asked(BETWEEN, self.plan.cloud_error && shocks)]
     }
 
@@ -117,46 +119,48 @@ impl Asked<'_> {
     /// says stop.
     fn about(
         &self,
-        steady: &Case,
+        steady: &Problem,
         add: &mut dyn FnMut(Vec<Column>) -> Result<(), RunError>,
         monitor: &mut dyn Monitor,
-    ) -> Result<Option<Flow>, RunError> {
-        let mut session = Session::open(steady, self.input)?;
-        let (mut stopped, mut shocks) = (false, false);
+    ) -> Result<Option<SteadyFlow>, RunError> {
         let columns = self.plan.reduced_frequencies.len() * self.plan.all_modes().count();
-        let share = cost::share_of_steady(dimension(steady).into(), columns);
-        let mut then = |source: &mut dyn ForceSource, log: &mut Log<'_>| {
-            shocks = source.is_supersonic();
-            let all = in_order(&self.plan.reduced_frequencies);
-            for (number, &k) in all.iter().enumerate() {
-                log.portion = log.portion.at(number as f64 / all.len() as f64);
-                log.doing(&format!("forces at k = {k}, {} of {} frequencies", number + 1, all.len()));
-                let found = at_frequency((self.case, self.plan), k, (source, &|| log.stopped()), self.length);
-                let Some(found) = found else {
-                    stopped = true;
-                    break;
-                };
-                for column in &found {
-                    let Some(solved) = column.solved else { continue };
-                    log.note(&format!(
-                        "k = {k}, {}: Cl {:+.4} {:+.4}i, Cm {:+.4} {:+.4}i, {} linear iterations, residual {:.0e}",
-                        column.mode,
-                        column.cl[0],
-                        column.cl[1],
-                        column.cm[0],
-                        column.cm[1],
-                        solved.iterations,
-                        solved.left
-                    ));
-                }
-                add(found)?;
-            }
-            Ok(())
-        };
-        let Outcome::Finished(summary) = session.solve_then(monitor, (share, &mut then))? else { return Ok(None) };
+        let share = cost::share_of_steady(dimension(steady.case()).into(), columns);
+        let Some(mut flow) = flow::steady(steady, share, monitor)? else { return Ok(None) };
+        let Some(shocks) = self.columns(&mut *flow, add)? else { return Ok(None) };
+        let Ok(Solution { summary, .. }) = flow.conclude(None)? else { return Ok(None) };
         let solved = summary.succeeded();
-        Ok((!stopped).then_some(Flow { cloud: summary.cloud, solved, shocks }))
+        Ok(Some(SteadyFlow { cloud: summary.cloud, solved, shocks }))
     }
+
+    /// Hands the columns about a flow that is known to `add`, frequency by frequency; true where that flow is faster than sound somewhere,
+    /// `None` when the monitor says stop.
+    fn columns(
+        &self,
+        flow: &mut dyn Flow<'_>,
+        add: &mut dyn FnMut(Vec<Column>) -> Result<(), RunError>,
+    ) -> Result<Option<bool>, RunError> {
+        let (mut source, log) = flow.forces()?;
+        let shocks = source.is_supersonic();
+        let all = in_order(&self.plan.reduced_frequencies);
+        for (number, &k) in all.iter().enumerate() {
+            log.portion = log.portion.at(number as f64 / all.len() as f64);
+            log.doing(&format!("forces at k = {k}, {} of {} frequencies", number + 1, all.len()));
+            let found = at_frequency((self.case, self.plan), k, (&mut *source, &|| log.stopped()), self.length);
+            let Some(found) = found else { return Ok(None) };
+            found.iter().filter_map(told).for_each(|line| log.note(&line));
+            add(found)?;
+        }
+        Ok(Some(shocks))
+    }
+}
+
+/// A column in a line for people; `None` where it was not solved for.
+fn told(column: &Column) -> Option<String> {
+    let solved = column.solved?;
+    Some(format!(
+        "k = {}, {}: Cl {:+.4} {:+.4}i, Cm {:+.4} {:+.4}i, {} linear iterations, residual {:.0e}",
+        column.k, column.mode, column.cl[0], column.cl[1], column.cm[0], column.cm[1], solved.iterations, solved.left
+    ))
 }
 
 /// The columns at the reduced frequency `k`; `length` is that of reduced frequencies, and of the coordinate of plunge. `None` where `stop`

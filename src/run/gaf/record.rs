@@ -5,14 +5,11 @@ use num_complex::Complex64;
 use serde::Serialize;
 use serde_json::json;
 
-use super::super::error::RunError;
 use super::super::folder;
-use super::super::look::reference;
-use super::super::setup;
-use crate::case::{Case, Gaf};
-use crate::geometry::dimension;
+use crate::case::Gaf;
 use crate::observe::columns::{Scale, describe_tables};
 use crate::observe::table::{Entry, write_csv, write_json};
+use crate::problem::{Problem, RunError, reference};
 
 /// Signs and units of generalised forces.
 pub const CONVENTION: &str = "f(t) = Re f exp(+i omega t); Cl = lift/(q c), up positive; Cm = moment/(q c^2) about the pivot, nose up \
@@ -117,20 +114,20 @@ impl Column {
 }
 
 impl Conditions {
-    pub(super) fn of(case: &Case, plan: &Gaf, input: &Path) -> Result<Self, RunError> {
-        let (chord, area) = match dimension(case) {
-            2 => {
-                let chord =
-                    setup::surface::<2>(case, input)?.0.as_ref().map_or(1.0, |s| reference::chord(case, Some(s)));
+    pub(super) fn of(problem: &Problem, plan: &Gaf) -> Self {
+        let case = problem.given();
+        let (chord, area) = match problem {
+            Problem::Plane(problem) => {
+                let chord = problem.surface().map_or(1.0, |s| reference::chord(case, Some(s)));
                 (chord, chord)
             }
-            _ => {
-                let seen = setup::surface::<3>(case, input)?.0.as_ref().map(|s| reference::planform(case, s));
+            Problem::Space(problem) => {
+                let seen = problem.surface().map(|s| reference::planform(case, s));
                 seen.map_or((1.0, 1.0), |seen| (seen.chord, seen.area))
             }
         };
-        let stream = case.flow.reference();
-        Ok(Self {
+        let stream = problem.reference();
+        Self {
             mach: stream.mach,
             speed: stream.speed,
             dynamic_pressure: stream.dynamic_pressure(),
@@ -139,7 +136,7 @@ impl Conditions {
             area,
             reduced_length: plan.reduced_length.map_or(0.5 * chord, |l| l.0),
             pivot: plan.pivot.as_ref().map(|p| p.iter().map(|x| x.0).collect()),
-        })
+        }
     }
 }
 

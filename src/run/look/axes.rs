@@ -1,6 +1,5 @@
 //! Axes of loads, and the gas at one moment seen in them.
 use super::friction::add_friction;
-use super::reference::planform;
 use crate::case::Case;
 use crate::cloud::CloudSpec;
 use crate::geometry::{Planform, Surface};
@@ -9,6 +8,7 @@ use crate::math::sweep::sum;
 use crate::math::{Bounds, Vector};
 use crate::motion::BodyMotion;
 use crate::observe::loads::{Coefficients, Load, LoadAxes};
+use crate::problem::reference::planform;
 use crate::scheme::start::{free_stream, stream_axes};
 use crate::scheme::{Fluid, Frame, HasGas, View, Work};
 

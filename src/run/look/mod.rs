@@ -8,7 +8,6 @@ mod hinge;
 mod hull;
 mod mesh;
 pub(crate) mod momentum;
-pub(crate) mod reference;
 mod rim;
 mod span;
 mod symmetry;

@@ -1,8 +1,9 @@
 //! What is measured of a flutter boundary.
 use serde::{Deserialize, Serialize};
 
-use super::super::flutter::{Boundary, or_infinite};
+use super::super::flutter::Boundary;
 use super::Value;
+use crate::record::flutter::or_infinite;
 use crate::verify::{Claim, Metric};
 
 /// Part by which Mach numbers may differ.

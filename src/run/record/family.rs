@@ -2,7 +2,7 @@
 use super::{Log, Record};
 use crate::case::{Accuracy, Case};
 use crate::observe::convergence::{CloudLoads, Convergence};
-use crate::run::accuracy;
+use crate::problem::spacing;
 use crate::run::stage::Stage;
 
 /// Time that the next cloud of a family takes over that of all before it.
@@ -10,7 +10,7 @@ const NEXT: f64 = 4.0;
 
 /// The error bars of the clouds of a run, and what ended their family; `None` where there are none.
 pub(crate) fn found(case: &Case, record: &Record) -> Option<Convergence> {
-    let family = Convergence::of(&record.clouds, accuracy::asked(case)?.loads.0)?;
+    let family = Convergence::of(&record.clouds, spacing::asked(case)?.loads.0)?;
     Some(if record.out_of_time { family.out_of_time() } else { family })
 }
 

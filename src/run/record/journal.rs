@@ -1,8 +1,6 @@
 //! Tables that a run appends to while it goes.
 use std::path::{Path, PathBuf};
 
-use super::super::error::RunError;
-use super::super::folder;
 use super::crosscheck::{self, Twofold};
 use super::history::IterationHistory;
 use super::saved::Saved;
@@ -13,6 +11,8 @@ use crate::observe::History;
 use crate::observe::columns::{Scale, describe_tables};
 use crate::observe::structure::{self, StructureHistory, StructureNames, StructureSample, StructureTable};
 use crate::observe::table::TableMark;
+use crate::problem::RunError;
+use crate::problem::files;
 
 /// Name of the history in the run folder.
 const HISTORY: &str = "history.csv";
@@ -64,7 +64,7 @@ impl Journal {
         });
         let structures = structures.transpose()?;
         let until = |s: &Saved| case.flow.units().case_time(s.time);
-        let text = |name: &str| folder::text(out, name).unwrap_or_default();
+        let text = |name: &str| files::text(out, name).unwrap_or_default();
         let earlier = saved.map_or_else(Earlier::default, |s| Earlier {
             history: rows.with_rows(&text(HISTORY)),
             trace: if s.time > 0.0 { Trace::parse(&text(HISTORY), until(s)) } else { Trace::default() },

@@ -1,7 +1,7 @@
 //! The record of a run, and its ways out.
 use std::path::Path;
+use std::sync::Arc;
 
-use super::super::error::RunError;
 use super::super::look::LoadFrame;
 use super::super::look::forces::GeneralisedForce;
 use super::super::monitor::{Monitor, Tick};
@@ -19,6 +19,8 @@ use crate::observe::convergence::CloudLoads;
 use crate::observe::error_bars::{Measure, Measured, Quantity, Window};
 use crate::observe::structure::{CoordinateHistory, StructureNames, StructureSample, StructureSummary, StructureTable};
 use crate::observe::swing::Swing;
+use crate::problem::Described;
+use crate::problem::RunError;
 use crate::scheme::RemapLedger;
 use crate::time::TimeError;
 
@@ -130,20 +132,11 @@ impl Record {
     }
 }
 
-/// A structure in words.
-#[derive(Clone, Debug)]
-pub(crate) struct Described {
-    /// Its body and coordinates.
-    pub(crate) names: StructureNames,
-    /// Its conventions, numbers and frequencies.
-    pub(crate) lines: Vec<String>,
-}
-
 /// The record of a run with its ways out: to those who watch, and to its folder where it has one.
 pub(crate) struct Log<'a> {
     monitor: &'a mut dyn Monitor,
     /// The case.
-    pub(crate) case: &'a Case,
+    pub(crate) case: Arc<Case>,
     /// Axes of the loads.
     pub(crate) axes: LoadFrame,
     /// From the units of the solver to those of the case: what observers keep, tell and write is in the latter.
@@ -176,7 +169,7 @@ pub(crate) struct Scales {
 impl<'a> Log<'a> {
     /// Opens the record of a run, and its tables where it has a folder `out`.
     pub(crate) fn open(
-        case: &'a Case,
+        case: Arc<Case>,
         out: Option<&Path>,
         Scales { axes, period }: Scales,
         saved: Option<&Saved>,
@@ -185,14 +178,14 @@ impl<'a> Log<'a> {
     ) -> Result<Self, RunError> {
         let names: Vec<StructureNames> = structures.iter().map(|s| s.names.clone()).collect();
         let twice = period.is_some() && case.moves() && !case.bodies.is_empty();
-        let opened = out.map(|out| Journal::open(case, out, saved, twice, &names)).transpose()?;
+        let opened = out.map(|out| Journal::open(&case, out, saved, twice, &names)).transpose()?;
         let (journal, earlier) =
             opened.map_or((None, Earlier::default()), |(journal, earlier)| (Some(journal), earlier));
         saved.map_or(Ok(()), |saved| saved.agrees(&earlier.history))?;
         let units = case.flow.units();
         let mut record = match saved {
             Some(saved) => Record::resumed(saved, earlier, &units),
-            None => Record { drop: 1.0, history: IterationHistory::of(case), ..Record::default() },
+            None => Record { drop: 1.0, history: IterationHistory::of(&case), ..Record::default() },
         };
         if record.structures.coordinates.is_empty() {
             record.structures = StructureTable::of(&names);
@@ -216,7 +209,7 @@ impl<'a> Log<'a> {
     }
 
     /// The run turns to a point of a polar: `case` in axes of its own.
-    pub(crate) fn turn_to(&mut self, case: &'a Case, axes: LoadFrame, point: [usize; 2]) {
+    pub(crate) fn turn_to(&mut self, case: Arc<Case>, axes: LoadFrame, point: [usize; 2]) {
         (self.case, self.axes, self.point) = (case, axes, Some(point));
     }
 

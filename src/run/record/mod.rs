@@ -14,5 +14,5 @@ mod trust;
 
 pub use history::IterationHistory;
 pub(crate) use interval::{NEARLY, passed};
-pub(crate) use log::{Described, Log, Record, Scales};
+pub(crate) use log::{Log, Record, Scales};
 pub(crate) use solid_end::SolidEnd;

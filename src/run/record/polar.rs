@@ -3,11 +3,11 @@ use std::path::Path;
 
 use serde::{Deserialize, Serialize};
 
-use super::super::error::RunError;
 use crate::case::Case;
 use crate::math::digits::{fixed, short};
 use crate::observe::loads::Coefficients;
 use crate::observe::table::{Entry, write_csv};
+use crate::problem::RunError;
 
 /// Name of the table in the run folder.
 pub(crate) const FILE: &str = "polar.csv";

@@ -5,7 +5,6 @@ use std::sync::Arc;
 
 use serde::{Deserialize, Serialize};
 
-use super::super::error::RunError;
 use super::super::stage::{Stage, Task};
 use super::polar::PolarRecord;
 use crate::case::{Case, Structure};
@@ -14,6 +13,7 @@ use crate::math::Vector;
 use crate::observe::checkpoint::{self, Array, Checkpoint, Field};
 use crate::observe::convergence::CloudLoads;
 use crate::observe::table::TableMark;
+use crate::problem::RunError;
 use crate::scheme::{Fluid, Frame, ParticleKinematics, RemapLedger};
 use crate::system::Reach;
 use crate::time::control::Phase;

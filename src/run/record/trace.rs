@@ -6,11 +6,11 @@ use std::path::Path;
 use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
 
-use super::super::error::RunError;
 use crate::observe::cycles::Cycles;
 use crate::observe::harmonics::{Harmonics, Periodicity, Window};
 use crate::observe::loads::Coefficients;
 use crate::observe::table::{Entry, write_csv, write_json};
+use crate::problem::RunError;
 use crate::verify::Loops;
 
 /// Harmonics that are reported: more where those do not hold the motion, as of several frequencies on their common one.

@@ -5,9 +5,10 @@ use super::saved::{LagrangianCheckpoint, Saved, require};
 use crate::case::Case;
 use crate::observe::convergence::CloudLoads;
 use crate::observe::loads::Coefficients;
-use crate::run::error::RunError;
+use crate::problem::RunError;
+use crate::problem::numerics;
+use crate::problem::spacing;
 use crate::run::stage::{Stage, Task};
-use crate::run::{accuracy, recipe};
 use crate::system::{Field, unknowns};
 use crate::time::Memory;
 
@@ -159,9 +160,9 @@ fn is_of_a_point(point: &PolarPoint) -> bool {
 fn is_of(case: &Case, stage: &Stage) -> bool {
     let cloud = stage.factor.is_finite()
         && 0.0 < stage.factor
-        && (stage.cycle <= case.adapt.cycles || accuracy::asked(case).is_some());
+        && (stage.cycle <= case.adapt.cycles || spacing::asked(case).is_some());
     let task = match stage.task {
-        Task::Balance { harmonics } => recipe::balance(case).is_some_and(|plan| harmonics <= recipe::most(plan)),
+        Task::Balance { harmonics } => numerics::balance(case).is_some_and(|plan| harmonics <= numerics::most(plan)),
         _ => true,
     };
     cloud && task

@@ -7,13 +7,13 @@
 use super::super::accuracy;
 use super::super::look::{Snapshot, field};
 use super::super::stage::Stage;
-use super::Site;
 use super::shock_layer::ShockLayer;
 use crate::case::{Accuracy, Case};
 use crate::cloud::CloudSpec;
 use crate::cloud::layout::count;
 use crate::cloud::sources::Source;
 use crate::geometry::Surface;
+use crate::problem::{ProblemIn, spacing};
 use crate::scheme::{HasGas, View, adapt};
 use crate::system::{Instant, System};
 
@@ -22,7 +22,7 @@ const COARSER: f64 = 2.0;
 
 /// Sources of refinement for the `next` stage, from the solution of `this` one.
 pub(crate) fn adapted<S: HasGas<D>, const D: usize>(
-    site: &Site<'_, D>,
+    problem: &ProblemIn<D>,
     [this, next]: [&Stage; 2],
     system: &S,
     state: &[f64],
@@ -31,13 +31,13 @@ pub(crate) fn adapted<S: HasGas<D>, const D: usize>(
     let mut work = fluid.work();
     let frame = fluid.frame(&Instant::still(0.0), gas);
     let view = fluid.view(&frame, gas, &mut work);
-    match (accuracy::asked(site.case), site.surface) {
-        (Some(_), Some(surface)) if site.case.adapt.cycles == 0 => {
-            behind_shocks(site.case, surface, &field(site.case, &view), next.factor)
+    match (spacing::asked(problem.case()), problem.surface()) {
+        (Some(_), Some(surface)) if problem.case().adapt.cycles == 0 => {
+            behind_shocks(problem.case(), surface, &field(problem.case(), &view), next.factor)
         }
-        (Some(asked), Some(surface)) => in_family(site.case, surface, &view, (&asked, [this.factor, next.factor])),
-        (None, Some(surface)) => on_its_own(site.case, surface, &view),
-        _ => adapt::sources(&view, &site.case.adapt.sensors, finest(site.case)),
+        (Some(asked), Some(surface)) => in_family(problem.case(), surface, &view, (&asked, [this.factor, next.factor])),
+        (None, Some(surface)) => on_its_own(problem.case(), surface, &view),
+        _ => adapt::sources(&view, &problem.case().adapt.sensors, finest(problem.case())),
     }
 }
 
@@ -60,7 +60,7 @@ pub(crate) fn behind_shocks<const D: usize>(
     field: &Snapshot,
     factor: f64,
 ) -> Vec<Source<D>> {
-    let asked = accuracy::asked(case).filter(|_| accuracy::follows_shocks(case));
+    let asked = spacing::asked(case).filter(|_| accuracy::follows_shocks(case));
     let layer = asked.and_then(|asked| Some((ShockLayer::of(case, surface, field)?, asked)));
     let (Some((layer, asked)), Some(spacing)) = (layer, case.cloud.spacing) else { return Vec::new() };
     let at = |coarser: f64| layer.sources(factor * spacing.0, factor, coarser);
@@ -93,7 +93,7 @@ fn affordable<const D: usize>(
     (room, factor): (f64, f64),
     at: impl Fn(f64) -> Vec<Source<D>>,
 ) -> Vec<Source<D>> {
-    let spec = CloudSpec::of_case(&accuracy::scaled(case, factor));
+    let spec = CloudSpec::of_case(&spacing::scaled(case, factor));
     let cells = |sources: &[_]| count(&spec, Some(surface), sources).ok();
     let Some(alone) = cells(&[]) else { return Vec::new() };
     let mut coarser = 1.0;

@@ -71,8 +71,8 @@ fn least_pressure_coefficient(case: &Case) -> Option<f64> {
 mod tests {
     use std::path::Path;
 
-    use super::super::surface;
     use super::*;
+    use crate::problem::surface;
 
     /// Gas compressed as by a normal shock up to `thickness` ahead of a circle of radius 1/2.
     fn field(thickness: f64) -> Snapshot {

@@ -1,16 +1,16 @@
 //! Periodic motion of structures alone: the search harmonic after harmonic, what is recorded of the period, and checkpoints.
 use std::f64::consts::TAU;
 
-use super::super::error::RunError;
 use super::super::monitor::{Monitor, Tick};
 use super::super::time_left::Portion;
 use super::march::{Marched, Study, Waves};
 use super::pace::Pace;
 use super::record::{PeriodicRow, ProbeHarmonic, Row, Work};
 use super::saved::{Saved, Sought};
-use super::setup::Built;
 use crate::case::{HarmonicCount, Harmonics};
 use crate::math::fourier::Instances;
+use crate::problem::RunError;
+use crate::problem::solids::Built;
 use crate::solid::Structure;
 use crate::solid::forces::State;
 use crate::system::Mechanical;

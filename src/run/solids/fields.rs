@@ -1,8 +1,8 @@
 //! Solid particles and their history as plain tables: what files and sessions hold. In SI units, in a gas in the units of the case.
 use super::super::look::Snapshot;
 use super::record::{Row, ledger};
-use super::setup::Built;
 use crate::physics::solid::{Material, Tensor, tensor};
+use crate::problem::solids::Built;
 use crate::solid::Solid;
 use crate::solid::forces::State;
 

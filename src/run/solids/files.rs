@@ -1,17 +1,18 @@
 //! Files of structures alone: fields, histories, modes, summary.
 use std::path::{Path, PathBuf};
 
-use super::super::error::RunError;
-use super::super::folder;
+use super::super::about;
 use super::fields::{columns, history, places, stresses};
 use super::pictures::{Shown, draw, picture};
 use super::record::{ModeRow, Row, SolidSummary};
-use super::setup::Built;
 use crate::case::Case;
 use crate::math::{Bounds, Vector};
 use crate::observe::About;
 use crate::observe::table::{Entry, write_csv, write_json};
 use crate::observe::vtk::{Cells, Column, write_cells, write_collection};
+use crate::problem::RunError;
+use crate::problem::files;
+use crate::problem::solids::Built;
 use crate::report::write_report;
 use crate::solid::Solid;
 use crate::solid::forces::State;
@@ -39,7 +40,7 @@ impl Files<'_> {
         u: &[f64],
     ) -> Result<(), RunError> {
         let Some(path) = self.path(&format!("{name}.vtu")) else { return Ok(()) };
-        write(&path, &About::solid(self.case, time), &built.structure.solid, &built.structure.state(0.0, u))
+        write(&path, &about::solid(self.case, time), &built.structure.solid, &built.structure.state(0.0, u))
     }
 
     /// A field file of a series, and the list of all of them.
@@ -53,7 +54,7 @@ impl Files<'_> {
         let Some(list) = self.path("solid.pvd") else { return Ok(()) };
         let name = format!("solid_{number:05}");
         self.fields((&name, Some(time)), built, u)?;
-        let known = self.out.map_or_else(String::new, |out| folder::text(out, "solid.pvd").unwrap_or_default());
+        let known = self.out.map_or_else(String::new, |out| files::text(out, "solid.pvd").unwrap_or_default());
         let mut all = crate::observe::vtk::read_collection(&known);
         all.retain(|(_, file)| *file != format!("{name}.vtu"));
         all.push((time, format!("{name}.vtu")));
@@ -78,7 +79,7 @@ impl Files<'_> {
         let raised = |v: &[f64]| -> [f64; 3] { std::array::from_fn(|a| v.get(a).copied().unwrap_or(0.0)) };
         let points: Vec<[f64; 3]> = particles.x.iter().map(|x| raised(&x.0)).collect();
         let values: Vec<f64> = shape.iter().flat_map(|v| raised(v)).collect();
-        let mut about = About::solid(self.case, None);
+        let mut about = about::solid(self.case, None);
         about.scalars = about.vectors;
         about.numbers.push(("frequency [Hz]".to_owned(), mode.omega / std::f64::consts::TAU));
         let column = Column { name: "displacement", components: 3, values: &values };

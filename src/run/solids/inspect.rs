@@ -3,10 +3,11 @@ use std::path::Path;
 
 use serde::Serialize;
 
-use super::super::error::RunError;
-use super::{balance, setup, supported, trial};
+use super::{balance, trial};
 use crate::case::{Case, Temporal};
 use crate::geometry::dimension;
+use crate::problem::RunError;
+use crate::problem::solids::{build, remembers, supported};
 use crate::solid::forces::State;
 use crate::solid::{Plane, Support};
 use crate::system::Mechanical;
@@ -59,9 +60,9 @@ pub(in super::super) fn inspect_in_gas(case: &Case, input: &Path) -> Result<Opti
 }
 
 fn report<const D: usize>(case: &Case, input: &Path) -> Result<SolidReport, RunError> {
-    let built = setup::build::<D>(case, input)?;
+    let built = build::<D>(case, input)?;
     if case.has_gas() {
-        setup::remembers(case, &built)?;
+        remembers(case, &built)?;
     } else if let Temporal::Harmonics(plan) = &case.time {
         balance::possible(&built, plan)?;
     }

@@ -1,5 +1,4 @@
 //! Marching and equilibrium of structures alone: the loop, what is recorded on the way, and checkpoints.
-use super::super::error::RunError;
 use super::super::monitor::{MarchTick, Monitor, Tick};
 use super::super::record::saved::FILE;
 use super::super::time_left::Portion;
@@ -7,9 +6,10 @@ use super::files::Files;
 use super::pace::Pace;
 use super::record::{PeriodicRow, ProbeHarmonic, Row, Work};
 use super::saved::{Saved, Standing};
-use super::setup::Built;
 use crate::case::{Case, Temporal};
 use crate::math::Vector;
+use crate::problem::RunError;
+use crate::problem::solids::Built;
 use crate::solid::Structure;
 use crate::solid::forces::State;
 use crate::time::structural::{Equilibrium, GeneralisedAlpha, LoadPlan, Newton, Plan};

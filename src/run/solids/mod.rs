@@ -1,22 +1,13 @@
 //! Structures of particles alone: equilibrium, marching and natural modes, without a gas.
 mod balance;
-mod cut;
 mod fields;
 pub(super) mod files;
-mod filling;
 mod inspect;
 mod march;
-mod material;
-mod natural;
-mod own_modes;
 mod pace;
 pub(super) mod pictures;
-mod probes;
 mod record;
 mod saved;
-pub(super) mod setup;
-mod size;
-mod spline_modes;
 mod summary;
 #[cfg(test)]
 mod tests;
@@ -24,18 +15,18 @@ mod trial;
 
 use std::path::Path;
 
-use super::error::RunError;
 use super::files::write_state_script;
 use super::folder;
 use super::monitor::Monitor;
 use super::record::summary::Clock;
-use crate::case::{Case, PlaneState, Temporal};
+use crate::case::{Case, Temporal};
 use crate::geometry::dimension;
+use crate::problem::RunError;
+use crate::problem::solids::{build, supported};
 use crate::solid::modes::{Mode, Wanted, modes};
 
 pub(super) use inspect::inspect_in_gas;
 pub use inspect::{SolidReport, inspect_structure};
-pub(super) use own_modes::{told_of_own_modes, with_own_modes};
 pub use record::{ModeRow, PeriodicRow, ProbeHarmonic, ProbeRow, SolidLedger, SolidSolution, SolidSummary};
 
 pub(super) use fields::{snapshot, von_mises};
@@ -51,48 +42,6 @@ pub enum Ended {
     Finished(Box<SolidSolution>),
     /// Told to stop after so many steps.
     Interrupted(u64),
-}
-
-/// Refuses what can be said of structures but is not computed yet.
-pub(super) fn supported(case: &Case) -> Result<(), RunError> {
-    let any = |f: fn(&crate::case::Solid) -> bool| case.solids().any(|(_, _, s)| f(s));
-    let asks = [
-        (
-            any(|s| s.plane == PlaneState::Axisymmetric) && any(|s| s.plane != PlaneState::Axisymmetric),
-            "bodies of which some only are axisymmetric (`plane = \"axisymmetric\"`)",
-        ),
-        (differ(case), "bodies with different `damping` or `stiffness_damping`"),
-        (
-            case.contact.is_some() && !matches!(case.time, Temporal::Explicit(_)),
-            "contact in other than explicit marches (`[contact]` needs `[time.explicit]`)",
-        ),
-    ];
-    match asks.iter().filter(|a| a.0).map(|a| a.1).collect::<Vec<_>>()[..] {
-        [] => Ok(()),
-        ref missing => Err(RunError::Unsupported {
-            what: format!("{} cannot be computed yet", missing.join(" and ")),
-            hint: "leave it out",
-        }),
-    }
-}
-
-/// True where one body is damped in another way than the others.
-fn differ(case: &Case) -> bool {
-    let mut all = case.solids().map(|(_, _, s)| (s.damping.0, s.stiffness_damping.0));
-    let first = all.next();
-    all.any(|d| Some(d) != first)
-}
-
-/// Refuses what is computed of a gas where there is none.
-pub(super) fn with_gas(case: &Case) -> Result<(), RunError> {
-    supported(case)?;
-    if case.has_gas() {
-        return Ok(());
-    }
-    Err(RunError::Unsupported {
-        what: "the case has no gas: a structure alone has no cloud, and no fields or loads of one".into(),
-        hint: "`alula run` computes it",
-    })
 }
 
 /// A structure alone that is to be computed.
@@ -119,7 +68,7 @@ pub(super) fn solve(job: &Job<'_>, monitor: &mut dyn Monitor) -> Result<Ended, R
 fn study<const D: usize>(job: &Job<'_>, monitor: &mut dyn Monitor) -> Result<Ended, RunError> {
     let Job { case, input, out, from } = *job;
     let clock = Clock::start();
-    let built = setup::build::<D>(case, input)?;
+    let built = build::<D>(case, input)?;
     built.notes.iter().for_each(|n| monitor.note(n));
     built.warnings.iter().for_each(|w| monitor.warn(w));
     let files = Files { case, out };

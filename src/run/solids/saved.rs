@@ -7,13 +7,13 @@ use std::path::Path;
 
 use serde_json::{Value, json};
 
-use super::super::error::RunError;
 use super::super::record::saved::FILE;
 use super::record::{Row, Work};
-use super::setup::Built;
 use crate::case::{Case, HarmonicCount, Harmonics, Temporal};
 use crate::math::fourier::Instances;
 use crate::observe::checkpoint::{self, Array, Checkpoint, Field};
+use crate::problem::RunError;
+use crate::problem::solids::Built;
 use crate::solid::forces::Energy;
 use crate::system::{Mechanical, System, unknowns};
 use crate::time::Past;

@@ -48,7 +48,7 @@ fn gone_on(out: &Path) -> Result<Outcome, String> {
 }
 
 fn file(out: &Path, name: &str) -> String {
-    crate::run::folder::text(out, name).unwrap_or_else(|e| panic!("{name}: {e}"))
+    crate::problem::files::text(out, name).unwrap_or_else(|e| panic!("{name}: {e}"))
 }
 
 fn kept(out: &Path) -> Checkpoint<'static> {

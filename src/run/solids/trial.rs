@@ -6,8 +6,8 @@
 use std::path::Path;
 use std::time::{Duration, Instant};
 
-use super::setup::{Built, build};
 use crate::case::{Case, Length, Temporal};
+use crate::problem::solids::{Built, build};
 use crate::time::symplectic::{Plan, Symplectic};
 use crate::time::{Integrator, Past};
 

@@ -1,6 +1,4 @@
 //! Harmonic balance with one number of harmonics, and what is made of the last one.
-use super::super::error::RunError;
-use super::super::recipe::{harmonic_control, is_automatic};
 use super::super::record::Log;
 use super::super::record::saved::Settling;
 use super::super::record::summary::BalanceReport;
@@ -15,6 +13,8 @@ use crate::case::Harmonics;
 use crate::math::fourier::{Instances, Series};
 use crate::math::sweep::sum;
 use crate::physics::n_variables;
+use crate::problem::RunError;
+use crate::problem::numerics::{harmonic_control, is_automatic};
 use crate::scheme::{Fluid, Frame, HasGas};
 use crate::system::System;
 use crate::time::control::Method;

@@ -3,9 +3,7 @@
 //! The states of the balance at the start of a period and at the two steps before it are what the second-order formula in time
 //! goes on from: the march has no start of its own to forget. It solves the same equations in space with another error in time,
 //! and leaves the balance where the flow has a rhythm of its own or waves that the harmonics cannot hold.
-use super::super::error::RunError;
 use super::super::look::GasView;
-use super::super::recipe::harmonic_control;
 use super::super::record::Log;
 use super::super::record::summary::{Apart, MarchingCheck};
 use super::super::watch::{Effort, Ending, Now, Observer, Told, drive};
@@ -15,6 +13,8 @@ use crate::case::Harmonics as Asked;
 use crate::math::fourier::Series;
 use crate::observe::harmonics::{Harmonics, Window};
 use crate::observe::loads::Coefficients;
+use crate::problem::RunError;
+use crate::problem::numerics::harmonic_control;
 use crate::scheme::HasGas;
 use crate::time::dual::Dual;
 use crate::time::{Integrator, Past, Standing, Step};

@@ -3,13 +3,13 @@
 //! Newton's method finds the periodic solution from a guess that is near enough. Copies of a steady flow are, where the motion is
 //! mild; flow that separates, or a body whose speed is a good part of that of the stream, needs the flow of a period that has been
 //! marched. Its accuracy does not matter: steps are coarse, and a multiple of the instances, which are taken from the last period.
-use super::super::error::RunError;
-use super::super::recipe::harmonic_control;
 use super::super::record::{Log, NEARLY, passed};
 use super::super::watch::{Effort, Ending, Now, Observer, Told, drive};
 use super::periodic::{build, period_of};
 use super::turn::Reached;
 use crate::case::Harmonics;
+use crate::problem::RunError;
+use crate::problem::numerics::harmonic_control;
 use crate::scheme::HasGas;
 use crate::system::System;
 use crate::time::dual::{Dual, Plan};

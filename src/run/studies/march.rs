@@ -1,7 +1,5 @@
 //! Marching in time; where particles travel, in legs between which the cloud is built anew.
-use super::super::error::RunError;
 use super::super::look::totals;
-use super::super::recipe::{Marching, Scheme};
 use super::super::record::Log;
 use super::super::record::saved::LagrangianCheckpoint;
 use super::super::setup::Solver;
@@ -12,6 +10,8 @@ use super::super::watch::{
 use super::turn::{Reached, Start, Turn};
 use crate::coupling::Marches;
 use crate::physics::n_variables;
+use crate::problem::RunError;
+use crate::problem::numerics::{Marching, Scheme};
 use crate::scheme::Reclouded;
 use crate::scheme::{Fluid, HasGas, RemapLedger};
 use crate::system::{Instant, System};

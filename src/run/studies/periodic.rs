@@ -4,7 +4,7 @@ use std::path::Path;
 
 use num_complex::Complex64;
 
-use super::super::error::RunError;
+use super::super::about;
 use super::super::files::{FILM, Target, together, write_film};
 use super::super::look::{GasView, Held, Mesh, Rim, motion, pressure_coefficient};
 use super::super::record::Log;
@@ -17,10 +17,10 @@ use crate::math::Vector;
 use crate::math::fourier::{Instances, Series};
 use crate::math::jet::Jet;
 use crate::motion::{BodyMotion, Motions, positions};
-use crate::observe::About;
 use crate::observe::loads::Coefficients;
 use crate::observe::table::{Entry, write_csv};
 use crate::observe::vtk::{Column, write_cells};
+use crate::problem::RunError;
 use crate::scheme::{Exchange, HasGas, Work};
 use crate::system::{Instant, System};
 use crate::time::harmonic::HarmonicBalance;
@@ -241,7 +241,7 @@ impl<S: HasGas<D>, const D: usize> PeriodicState<'_, S, D> {
     /// Loads at the instances, pictures at phases, coefficients in time of walls and field.
     pub(super) fn write(&self, film: Option<&Surface<D>>, log: &Log<'_>) -> Result<(), RunError> {
         let Some(journal) = &log.journal else { return Ok(()) };
-        let (case, out) = (log.case, &journal.out);
+        let (case, out) = (&log.case, &journal.out);
         let rows = log.record.instances.iter().map(|row| row.map(Entry::from).to_vec());
         write_csv(&out.join("instances.csv"), &["phase", "angle_deg", "shift", "cl", "cd", "cm"], rows)?;
         if let Some(surface) = film {
@@ -319,7 +319,7 @@ impl<S: HasGas<D>, const D: usize> PeriodicState<'_, S, D> {
             .collect();
         let columns: Vec<Column<'_>> =
             columns.iter().map(|(name, values)| Column { name, components: 1, values }).collect();
-        let (about, mesh) = (About::gas(case, "pressure_mean", None), Mesh::of(cloud, &held, &rim));
+        let (about, mesh) = (about::gas(case, "pressure_mean", None), Mesh::of(cloud, &held, &rim));
         Ok(write_cells(&out.join("field_harmonics.vtu"), &about, &points, mesh.cells(), &columns)?)
     }
 

@@ -1,11 +1,11 @@
 //! When a harmonic balance has found its loads: a small motion hardly shows in the residual.
-use super::super::error::RunError;
 use super::super::look::{GasView, motion};
 use super::super::record::Log;
 use super::super::record::saved::Settling;
 use super::super::watch::{Eyes, Now, Observer, Wish};
 use crate::math::fourier::Series;
 use crate::observe::loads::Coefficients;
+use crate::problem::RunError;
 use crate::scheme::HasGas;
 use crate::system::System;
 use crate::time::harmonic::HarmonicBalance;

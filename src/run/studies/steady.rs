@@ -1,8 +1,5 @@
 //! Relaxation to a steady state: the end of a steady case, or the start of another.
-use super::super::accuracy;
-use super::super::error::RunError;
 use super::super::look::{GasView, entropy_drag, momentum};
-use super::super::recipe::control;
 use super::super::record::family;
 use super::super::record::{IterationHistory, Log};
 use super::super::stage::{Stage, Task};
@@ -15,6 +12,9 @@ use crate::cloud::CloudSpec;
 use crate::math::Bounds;
 use crate::observe::convergence::CloudLoads;
 use crate::observe::loads::Coefficients;
+use crate::problem::RunError;
+use crate::problem::numerics::control;
+use crate::problem::spacing;
 use crate::scheme::{Fluid, HasGas, View, Work};
 use crate::system::Implicit;
 use crate::time::relax::Relax;
@@ -59,7 +59,7 @@ pub(crate) fn relax<S: HasGas<D>, const D: usize>(
     if resume.is_none() {
         system.prescribe(0.0, &mut u);
     }
-    let asked = accuracy::asked(log.case);
+    let asked = spacing::asked(&log.case);
     let again = turn.next().is_some_and(|stage| stage.task == Task::Relax);
     let orders = match asked {
         Some(_) => steady.orders + SETTLING,
@@ -132,7 +132,7 @@ fn watched<S: HasGas<D>, const D: usize>(
     let eyes = &mut GasEyes { system };
     let mut progress = Progress { eyes, cycle: turn.stage().cycle, aim: Aim::Orders(orders) };
     // any cloud of a family may be the last one
-    let at_end = turn.last() || accuracy::asked(log.case).is_some();
+    let at_end = turn.last() || spacing::asked(&log.case).is_some();
     let mut checkpoint = Checkpoint::new(turn.at, None, at_end);
     let patience = match (turn.stage().point, turn.last()) {
         (Some(_), _) => POINT_PATIENCE,
@@ -143,7 +143,7 @@ fn watched<S: HasGas<D>, const D: usize>(
     let (mut limit, mut resting, mut swinging) =
         (Limit { iterations }, Resting { patience: PATIENCE }, Swinging { patience });
     let least = if turn.stage().factor > 1.0 && !turn.last() { EARLY_ORDERS } else { orders - SETTLING };
-    let (mut told, mut flat) = (Told, accuracy::asked(log.case).map(|asked| flat(&asked, least)));
+    let (mut told, mut flat) = (Told, spacing::asked(&log.case).map(|asked| flat(&asked, least)));
     let mut all: Vec<&mut dyn Observer<S>> = vec![&mut progress, &mut limit, &mut told];
     all.push(if hurried { &mut resting } else { &mut swinging });
     let mut given = Given { patience: PATIENCE_AT_REST, range: GIVEN };
@@ -174,8 +174,8 @@ fn tell<S: HasGas<D>, const D: usize>(
     let Standing { frame, work, state, .. } = relax.standing();
     let gas = GasView::of(system, frame, state);
     let loads = gas.coefficients(&log.axes, system.gas_work(work)).unwrap_or_default();
-    let family = accuracy::asked(log.case);
-    let balance = family.and_then(|_| momentum::around(log.case, &log.axes, &gas, system.gas_work(work), false));
+    let family = spacing::asked(&log.case);
+    let balance = family.and_then(|_| momentum::around(&log.case, &log.axes, &gas, system.gas_work(work), false));
     let momentum = balance.map(|sum| log.axes.axes(&gas.seen(system.gas_work(work))).coefficients(&sum.load));
     let told = log.record.structures.iteration.last() == Some(&(log.record.iteration as f64));
     if turn.last()
@@ -192,8 +192,8 @@ fn tell<S: HasGas<D>, const D: usize>(
     }
     let (reach, unsettled) = (reach(system.gas()), unsettled(log));
     let supersonic = is_supersonic(system.gas(), system.gas_work(work));
-    let lossless = !supersonic && is_lossless(system.gas(), log.case);
-    let wake = |view: View<'_, D>| entropy_drag(&view, log.case, &log.axes.axes(&view));
+    let lossless = !supersonic && is_lossless(system.gas(), &log.case);
+    let wake = |view: View<'_, D>| entropy_drag(&view, &log.case, &log.axes.axes(&view));
     let gas = GasView::of(system, frame, state);
     let spurious_drag = family.filter(|_| lossless).and_then(|_| wake(gas.seen(system.gas_work(work))));
     let (steady, Coefficients { cl, cd, cm }) = (log.record.converged, loads);

@@ -1,15 +1,11 @@
 //! What the program understood of `[structure]`, `[flutter]`, `[lco]` and `[gaf]`.
-use std::path::Path;
 
 use serde::Serialize;
 
-use super::super::error::RunError;
-use super::super::look::reference::chord;
-use super::super::setup;
 use super::{list, short};
 use crate::case::{AnyMode, Case, Gaf, GafMethod, Matching};
-use crate::geometry::Surface;
-use crate::motion::Motions;
+use crate::problem::ProblemIn;
+use crate::problem::reference::chord;
 
 /// A body on springs, or one that moves in modes.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -75,25 +71,21 @@ pub struct Aeroelastic {
 }
 
 impl Aeroelastic {
-    /// What a case, whose files lie in `input`, means with these bodies.
-    pub(crate) fn of<const D: usize>(
-        case: &Case,
-        input: &Path,
-        surface: Option<&Surface<D>>,
-    ) -> Result<Self, RunError> {
-        let bodies = setup::bodies(case, input, surface, &mut Motions::<D>::fixed(case.bodies.len()))?;
-        let described = setup::described(case, surface, &bodies).into_iter();
+    /// What a problem means.
+    pub(crate) fn of<const D: usize>(problem: &ProblemIn<D>) -> Self {
+        let (case, surface, bodies) = (problem.case(), problem.surface(), problem.structures());
+        let described = problem.described().iter().cloned();
         let structures = described.map(|d| UnderstoodStructure {
             body: d.names.body,
             coordinates: d.names.coordinates.into_iter().map(|c| c.name).collect(),
             description: d.lines,
         });
         let names = bodies.iter().flat_map(|b| b.structure.coordinates()).map(|c| c.name.clone()).collect();
-        Ok(Self {
+        Self {
             structures: structures.collect(),
             flutter: UnderstoodFlutter::of(case, names),
             gaf: case.gaf.as_ref().map(|gaf| UnderstoodGaf::of(gaf, chord(case, surface))),
-        })
+        }
     }
 
     /// The same in lines for people: what, and in which words.

@@ -13,16 +13,16 @@ use std::path::{Path, PathBuf};
 use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
 
-use super::super::at_end::Outcome;
-use super::super::error::RunError;
 use super::super::measure::{Measured, Numbers, boundary, forces, solid};
 use super::super::monitor::{Monitor, Quiet};
+use super::super::outcome::Outcome;
 use super::super::session::Session;
 use super::super::{flutter, gaf, solids};
 use crate::case::Case;
 use crate::observe::table::write_json;
 use crate::observe::usage::cpu_seconds;
 use crate::observe::{Checkpoint, checkpoint};
+use crate::problem::RunError;
 
 /// Name of the table of times.
 const TIMES: &str = "times.json";

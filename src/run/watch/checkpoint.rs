@@ -1,8 +1,8 @@
 //! Checkpoints: every so many iterations or minutes, when asked for, at the end and when things go wrong.
-use super::super::error::RunError;
 use super::super::record::Log;
 use super::super::record::saved::{LagrangianCheckpoint, Position, Saved, equations_of};
 use super::drive::{Ending, Now, Observer};
+use crate::problem::RunError;
 use crate::scheme::RemapLedger;
 use crate::system::System;
 use crate::time::{Integrator, Standing, Step};
@@ -88,7 +88,7 @@ impl<'a, S: System> Checkpoint<'a, S> {
             sources: self.at.sources.to_vec(),
             polar: record.polar.clone(),
             kept: self.at.kept.into(),
-            equations: single.then(|| equations_of(log.case)),
+            equations: single.then(|| equations_of(&log.case)),
             tables: journal.marks()?,
         };
         saved.write(&journal.out)

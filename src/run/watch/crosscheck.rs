@@ -1,9 +1,9 @@
 //! Loads evaluated twice at moments of a period.
-use super::super::error::RunError;
 use super::super::look::{GasView, momentum};
 use super::super::record::crosscheck::{MOMENTS, Moment};
 use super::super::record::{Log, passed};
 use super::drive::{Now, Observer};
+use crate::problem::RunError;
 use crate::scheme::{HasGas, View, Work};
 use crate::time::{Standing, Step};
 
@@ -36,7 +36,7 @@ pub(crate) fn compare<const D: usize>(
     if !log.compares_loads() {
         return Ok(());
     }
-    let Some(sum) = momentum::around(log.case, &log.axes, gas, work, true) else { return Ok(()) };
+    let Some(sum) = momentum::around(&log.case, &log.axes, gas, work, true) else { return Ok(()) };
     let view = View::new(gas.fluid, gas.frame, work);
     let wall = log.axes.coefficients(&view);
     let around = log.axes.axes(&view).coefficients(&sum.load);

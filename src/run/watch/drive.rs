@@ -2,8 +2,8 @@
 //!
 //! Before each step the observers say what they wish; the strongest wish ends the loop. After each step they look at it, in
 //! their order, so that a checkpoint, which comes last, holds what the others have found.
-use super::super::error::RunError;
 use super::super::record::Log;
+use crate::problem::RunError;
 use crate::system::System;
 use crate::time::{Cost, Integrator, Mark, Memory, Standing, Step, TimeError};
 

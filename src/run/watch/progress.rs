@@ -1,11 +1,11 @@
 //! Progress: the work done, a line of the history for every iteration, and a word to those who watch.
-use super::super::error::RunError;
 use super::super::look::{GasView, motion};
 use super::super::monitor::{MarchTick, Tick};
 use super::super::record::Log;
 use super::super::record::trace::Sample;
 use super::drive::{Now, Observer};
 use crate::observe::loads::Coefficients;
+use crate::problem::RunError;
 use crate::scheme::HasGas;
 use crate::system::System;
 use crate::time::{Standing, Step};

@@ -1,11 +1,11 @@
 //! Fields and pictures of a march on the way.
-use super::super::error::RunError;
 use super::super::files::{FILM, FILM_FIELDS, Target, write_film, write_film_field, write_series, write_solid_series};
 use super::super::look::GasView;
 use super::super::record::{Log, passed};
 use super::drive::{Now, Observer};
 use crate::coupling::Marches;
 use crate::geometry::Surface;
+use crate::problem::RunError;
 use crate::scheme::HasGas;
 use crate::time::{Standing, Step};
 
@@ -25,7 +25,7 @@ impl<S: Marches<D>, const D: usize> Observer<S> for FieldSeries<'_, S, D> {
         }
         let Standing { frame, work, state, .. } = now.standing();
         let view = GasView::of(self.system, frame, state);
-        let to = Target { case: log.case, out: &journal.out };
+        let to = Target { case: &log.case, out: &journal.out };
         write_series(&to, &view, self.system.gas_work(work), self.interval)?;
         match self.system.solid_snapshot(frame, state) {
             Some(solid) => write_solid_series(&to, &solid, (step.time, self.interval)),
@@ -56,7 +56,7 @@ impl<S: HasGas<D>, const D: usize> Observer<S> for Film<'_, S, D> {
         }
         let Standing { frame, work, state, .. } = now.standing();
         let view = GasView::of(self.system, frame, state);
-        let to = Target { case: log.case, out: &journal.out };
+        let to = Target { case: &log.case, out: &journal.out };
         let work = self.system.gas_work(work);
         if let Some(part) = field {
             write_film_field(&to, &view, work, period, part)?;

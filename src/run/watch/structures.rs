@@ -1,9 +1,9 @@
 //! How bodies on springs move: a row for every step.
-use super::super::error::RunError;
 use super::super::record::Log;
 use super::drive::{Now, Observer};
 use crate::case::Units;
 use crate::observe::structure::StructureSample;
+use crate::problem::RunError;
 use crate::scheme::{Exchange, HasGas};
 use crate::time::{Standing, Step};
 

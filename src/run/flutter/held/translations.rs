@@ -87,16 +87,14 @@ impl Translation {
 
 #[cfg(test)]
 mod tests {
-    use std::path::Path;
-
-    use super::super::Held;
+    use super::super::{Held, problem_of};
     use super::*;
 
     const CASE: &str = "[flow]\nmach = 0.5\n[[body]]\nnaca = \"0012\"\n[cloud]\nspacing = 0.1\n[flutter]\n[structure]\nelastic_axis = -0.4\n\
                         mass_ratio = 60\nx_alpha = 0.2\nr_alpha2 = 0.25\nfrequency_ratio = 0.5\nreduced_speed = 2\n";
 
     fn held(text: &str) -> Held {
-        Held::of(&crate::case::read(text, "case.toml").unwrap_or_else(|e| panic!("{e}")), Path::new("")).unwrap()
+        Held::of(&problem_of(text))
     }
 
     #[test]

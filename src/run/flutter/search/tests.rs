@@ -1,7 +1,6 @@
 //! Boundaries with forces that are known: flutter from the start, and soft suspensions.
-use std::path::Path;
-
 use super::super::clearance;
+use super::super::held::problem_of;
 use super::*;
 
 /// A section in air with little mass of air around it: its plunge mode grows at every density at the speed of Mach 0.3.
@@ -94,10 +93,10 @@ const PLAIN_FORCES: [(f64, [[f64; 2]; 4]); 5] = [
 
 /// The boundary of a case with forces that are known, and the margin to the design speed where that is given.
 fn boundary(text: &str, forces: &[(f64, [[f64; 2]; 4])]) -> FlutterAt {
-    let case = crate::case::read(text, "case.toml").unwrap_or_else(|e| panic!("{e}"));
-    let (own, plan) = (case.flutter_case(0.3), case.flutter.clone().unwrap());
-    let held = Held::of(&own, Path::new("")).unwrap();
-    let scales = Scales::of(&own, held.chord, plan.matching);
+    let problem = problem_of(text);
+    let (own, plan) = (problem.about_steady_flow(0.3).unwrap(), problem.case().flutter.clone().unwrap());
+    let held = Held::of(&own);
+    let scales = Scales::of(own.case(), held.chord, plan.matching);
     let sample = |(k, f): &(f64, [[f64; 2]; 4])| {
         (scales.angular_frequency(*k), f.iter().map(|z| Complex64::new(z[0], z[1])).collect())
     };

@@ -1,0 +1,252 @@
+//! Spacing of clouds: what is chosen where a case leaves it to the program, and the same cloud coarser or finer.
+//!
+//! A family of clouds is one cloud seen larger and larger: spacing, layers and what curvature asks for are scaled together.
+use std::borrow::Cow;
+
+use super::reference;
+use crate::case::{Accuracy, Case, Domain, Length, Side, Wake, WallLayers};
+use crate::cloud::CloudSpec;
+use crate::cloud::layout::count;
+use crate::geometry::Surface;
+
+/// Spacings in the length of the shortest body, in 2-D and 3-D.
+const ALONG: [f64; 2] = [64.0, 40.0];
+/// The same where the gas has viscosity: layers and wake need as many particles again, and a fourth cloud is to be within reach.
+const ALONG_LAYERS: f64 = 48.0;
+/// Particles per level of refinement of the cloud with that spacing.
+const LAYERS: [f64; 2] = [12.0, 8.0];
+/// The same in space where the stream is slower than sound and has no viscosity: there those at the walls count most. 100,000 particles of
+/// 4 to a level leave less spurious entropy and nearer loads than 220,000 of 8, whose spacing at the walls is wider
+/// (`tests/nightly/bars.py`). Detached shocks and wakes would cross levels that become coarser too soon.
+const LAYERS_OF_WINGS: f64 = 4.0;
+/// Half-width of their domain in lengths of the bodies: in the plane, beyond 40, where it is otherwise, nearly nothing is spent and
+/// lift gains 0.02 %; in space what a body does falls off faster.
+const FAR_FIELD: [f64; 2] = [100.0, 30.0];
+/// First layers at walls in L/√Re, which is a fifth of a laminar boundary layer, and how layers grow.
+pub(crate) const ACROSS: f64 = 16.0;
+const GROWTH: f64 = 1.2;
+/// Greatest growth of the layers of a coarser cloud.
+const STEEPEST: f64 = 1.5;
+/// Lengths of the shortest body behind which wakes are followed, and in which spacing, in that at the walls, in 2-D and 3-D.
+const WAKE: f64 = 2.0;
+const WAKE_SPACING: [f64; 2] = [1.0, 2.0];
+/// Particles per level of the cloud of small motions, and greatest number of particles that its spacing is chosen for, as if it were
+/// one of a family.
+const FEW_LAYERS: f64 = 6.0;
+const SMALL_MOTION_PARTICLES: [usize; 2] = [50_000, 100_000];
+/// Spacings in the mean thickness of a section in small motion, 2 A/P with its area A and its outline P (0.68 of the greatest one of a
+/// NACA section), and greatest number of spacings in its length. Measured on sections of 1, 2, 4 and 12 % at M 0.5: so resolved, phases
+/// of the moment about the quarter chord at k = 0.1 are 0.2 to 1.1 degrees from those of clouds four times as fine with twice the
+/// layers; 64 spacings at any thickness and the usual levels at edges and noses leave 1.9 to 4.
+const THROUGH: f64 = 5.0;
+const ALONG_THIN: f64 = 128.0;
+/// Spacings at sharp edges in the length of the shortest body: there velocities of small motions have singularities, whose error the
+/// moment about the quarter chord shows first.
+const AT_EDGES: f64 = 65_536.0;
+/// Levels of refinement that noses may ask for: a section of 1 % has a nose radius of 1e-4 chords.
+const NOSE_LEVELS: u32 = 10;
+/// Fewest particles per level of refinement.
+const FEWEST: f64 = 3.0;
+/// Cells of the size of the spacing that a domain which a case gives holds a whole number of.
+const COARSEST: [f64; 2] = [4.0, 8.0];
+/// Particles of a cloud over the cells of its background, at most: those on the walls come to those between them.
+const WITH_WALLS: f64 = 1.15;
+/// Power of the spacing that the number of particles of a cloud in space goes with, and how often a spacing is corrected.
+const POWER: f64 = 2.5;
+const ROUNDS: usize = 6;
+/// Factor by which few particles may make it coarser: half the shortest body, where edges and noses ask for finer ones anyway.
+const COARSE: f64 = 20.0;
+/// Cells along the shortest side of a domain that a case gives, at least; greatest number of those between sides that must stay; by how
+/// much of a side they may miss it.
+const CELLS: f64 = 8.0;
+const MOST_CELLS: u32 = 64;
+const WHOLE: f64 = 1e-9;
+
+/// How well the loads are to be known; `None` where they are those of one cloud, as of marches and balances.
+pub(crate) fn asked(case: &Case) -> Option<Accuracy> {
+    if case.is_unsteady() {
+        return None;
+    }
+    let chosen = case.cloud.spacing.is_none() && !case.bodies.is_empty();
+    let usual = || Accuracy::usual(case.dimension.map_or(2, usize::from), case.polar.is_some());
+    case.accuracy.or_else(|| chosen.then(usual))
+}
+
+/// The case with the spacing of its cloud, and with the accuracy that is asked for where it leaves that out.
+pub(crate) fn with_cloud<'a, const D: usize>(case: &'a Case, surface: Option<&Surface<D>>) -> Cow<'a, Case> {
+    let Some(surface) = surface.filter(|_| case.cloud.spacing.is_none()) else { return Cow::Borrowed(case) };
+    let length = |body: usize| {
+        let extent = surface.bounds_of(body).extent();
+        let mut sides: [f64; D] = std::array::from_fn(|d| extent[d]);
+        sides.sort_by(f64::total_cmp);
+        // the chord of a section and of a wing, the width of a slender body
+        sides[1]
+    };
+    let shortest = (0..surface.bodies.len()).map(length).fold(f64::INFINITY, f64::min);
+    let mut filled = case.clone();
+    filled.accuracy = asked(case).or(case.accuracy);
+    let chord = reference::chord(case, Some(surface));
+    let reynolds = case.flow.reynolds_number(chord);
+    let whole = case.flow.viscous_length(chord);
+    // a fifth of a laminar boundary layer
+    let thin = reynolds.map(|re| shortest / (ACROSS * (re * shortest / whole).sqrt()));
+    let along = shortest / if D == 2 && thin.is_some() { ALONG_LAYERS } else { ALONG[D - 2] };
+    filled.cloud.far_field =
+        case.cloud.far_field.or(Some(Length(FAR_FIELD[D - 2] * surface.bounds().extent().max_abs())));
+    let of_wing = D == 3 && thin.is_none() && case.flow.reference().mach <= 1.0;
+    filled.cloud.layers = case.cloud.layers.or(Some(if of_wing { LAYERS_OF_WINGS } else { LAYERS[D - 2] }));
+    // slow viscous flow needs no layers: what is thin is wider than the spacing
+    let thin = thin.filter(|thin| *thin < along);
+    let layers = thin.map(|thin| WallLayers { first: Length(thin), growth: GROWTH, count: None });
+    filled.cloud.wall_layers = case.cloud.wall_layers.or(layers);
+    let chosen = |spacing: f64| {
+        let mut filled = spaced::<D>(&filled, spacing);
+        let wake = Wake { length: Length(WAKE * shortest), spacing: Length(WAKE_SPACING[D - 2] * spacing) };
+        filled.cloud.wake = filled.cloud.wake.or(thin.map(|_| wake));
+        filled
+    };
+    Cow::Owned(chosen(if D == 3 { affordable(&chosen, surface, along) } else { along }))
+}
+
+/// What forces of small motions are wanted for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Forces {
+    /// A flutter boundary: a table for each of many Mach numbers, of which the balance of energy counts.
+    Boundary,
+    /// One table, of which every entry counts with its phase: thickness, nose and edges are resolved.
+    Table,
+}
+
+/// The case on one cloud where it leaves all of it to the program: for forces of small motions, which are surer on it than drag is.
+pub(crate) fn on_one_cloud<const D: usize>(case: Case, surface: Option<&Surface<D>>, wanted: Forces) -> Case {
+    if case.cloud.spacing.is_some() || case.accuracy.is_some() || surface.is_none() {
+        return case;
+    }
+    let mut asked = case;
+    asked.cloud.layers = asked.cloud.layers.or(Some(FEW_LAYERS));
+    asked.accuracy = Some(Accuracy { particles: SMALL_MOTION_PARTICLES[D - 2], ..Accuracy::in_dimension(D) });
+    let one = Case { accuracy: None, ..with_cloud(&asked, surface).into_owned() };
+    match surface.filter(|_| D == 2 && wanted == Forces::Table && one.cloud.wall_layers.is_none()) {
+        Some(surface) => of_section(one, surface),
+        None => one,
+    }
+}
+
+/// The case of a section without layers at its walls, with a spacing that follows its thickness and with levels that follow its nose and
+/// its edges, as far as the particles of small motions go. Levels that the case gives stay.
+fn of_section<const D: usize>(case: Case, surface: &Surface<D>) -> Case {
+    let usual = CloudSpec::<D>::new(1.0);
+    let along = case.cloud.spacing.map_or(0.0, |h| h.0);
+    let thickness = 2.0 * surface.volume().abs() / surface.area();
+    let least = along * ALONG[D - 2] / ALONG_THIN;
+    let case = spaced::<D>(&case, (thickness / THROUGH).max(least).min(along));
+    let spacing = case.cloud.spacing.map_or(along, |h| h.0);
+    let at_edges = (AT_EDGES * spacing / (along * ALONG[D - 2])).log2().ceil() as u32;
+    let levels =
+        |given: u32, usual: u32, most: u32| if given == usual { usual..=most.max(usual) } else { given..=given };
+    let edges = levels(case.cloud.edge_levels, usual.edge_levels, at_edges);
+    let noses = levels(case.cloud.curvature_levels, usual.curvature_levels, NOSE_LEVELS);
+    let fewer = |by: u32| {
+        let mut fewer = case.clone();
+        fewer.cloud.edge_levels = edges.end().saturating_sub(by).max(*edges.start());
+        fewer.cloud.curvature_levels = noses.end().saturating_sub(by).max(*noses.start());
+        fewer
+    };
+    let fits = |case: &Case| {
+        let counted = count(&CloudSpec::of_case(case), Some(surface), &[]);
+        counted.is_ok_and(|cells| cells <= SMALL_MOTION_PARTICLES[D - 2])
+    };
+    (0..=NOSE_LEVELS.max(at_edges)).map(fewer).find(fits).unwrap_or(case)
+}
+
+/// The spacing in space, no finer than `spacing`, at which the last of the clouds that an error bar takes has no more particles than are allowed:
+/// thin edges and noses ask for more than the size of a body tells. Particles are more than cells of the background, by those on the
+/// walls.
+fn affordable<const D: usize>(chosen: &impl Fn(f64) -> Case, surface: &Surface<D>, spacing: f64) -> f64 {
+    let room = asked(&chosen(spacing)).unwrap_or(Accuracy::in_dimension(D)).particles as f64 / WITH_WALLS;
+    let (mut spacing, coarsest) = (spacing, COARSE * spacing);
+    for _ in 0..ROUNDS {
+        let case = chosen(spacing);
+        let Ok(cells) = count(&CloudSpec::of_case(&case), Some(surface), &[]) else { break };
+        let over = cells as f64 / room;
+        if over <= 1.0 {
+            break;
+        }
+        spacing = (spacing * over.powf(1.0 / POWER)).min(coarsest);
+    }
+    spacing
+}
+
+/// The case with this spacing. A domain that it gives is widened at far sides until it holds whole cells of the coarsest cloud; where
+/// two sides of an axis must stay, the spacing is one that fits between them.
+fn spaced<const D: usize>(case: &Case, spacing: f64) -> Case {
+    let coarsest = COARSEST[D - 2];
+    let mut case = case.clone();
+    case.cloud.spacing = Some(Length(spacing));
+    let sides = CloudSpec::<D>::of_case(&case).sides;
+    let Some(Domain { min, max }) = case.cloud.domain.as_mut() else { return case };
+    let lengths: [f64; D] = std::array::from_fn(|d| max[d].0 - min[d].0);
+    let shortest = lengths.into_iter().fold(f64::INFINITY, f64::min);
+    // the first cloud fits as often as a power of two into cells that are small beside the domain
+    let cells = |cell: f64| (cell / (coarsest * spacing)).log2();
+    let mut cell = coarsest * spacing * 2f64.powf(cells(shortest / CELLS).floor().max(0.0));
+    let whole = |length: f64, cell: f64| (length / cell - (length / cell).round()).abs() < WHOLE * length / cell;
+    let far = |d: usize, end: usize| sides[d][end] == Side::FarField;
+    let fixed = || (0..D).filter(|d| !far(*d, 0) && !far(*d, 1)).map(|d| lengths[d]);
+    if let Some(first) = fixed().reduce(f64::min) {
+        let fitting = (1..=MOST_CELLS).map(|n| first / f64::from(n)).find(|c| fixed().all(|length| whole(length, *c)));
+        cell = fitting.unwrap_or(first);
+        case.cloud.spacing = Some(Length(cell / (coarsest * 2f64.powf(cells(cell).round().max(0.0)))));
+    }
+    for d in (0..D).filter(|d| !whole(lengths[*d], cell)) {
+        let more = (lengths[d] / cell).ceil() * cell - lengths[d];
+        match (far(d, 0), far(d, 1)) {
+            (true, true) => (min[d].0, max[d].0) = (min[d].0 - 0.5 * more, max[d].0 + 0.5 * more),
+            (true, false) => min[d].0 -= more,
+            (false, true) => max[d].0 += more,
+            (false, false) => {}
+        }
+    }
+    case
+}
+
+/// The case with the spacing, the particles per level and what curvature asks for scaled by `factor`: its cloud is alike, and has
+/// factor⁻ᵈ as many particles.
+pub(crate) fn scaled(case: &Case, factor: f64) -> Case {
+    let mut case = case.clone();
+    if factor == 1.0 {
+        return case;
+    }
+    let scale = |l: &mut Length| l.0 *= factor;
+    case.cloud.spacing.iter_mut().for_each(scale);
+    case.cloud.boxes.iter_mut().for_each(|b| scale(&mut b.spacing));
+    if let Some(wake) = case.cloud.wake.as_mut() {
+        scale(&mut wake.spacing);
+    }
+    if let Some(layers) = case.cloud.wall_layers.as_mut() {
+        scale(&mut layers.first);
+        layers.growth = (1.0 + (layers.growth - 1.0) * factor).min(STEEPEST.max(layers.growth));
+    }
+    case.cloud.curvature = (case.cloud.curvature * factor).min(1.0);
+    case.cloud.layers = Some((case.cloud.particles_per_level() / factor).max(FEWEST));
+    case
+}
+
+/// Particles of the cloud with a factor on the spacing of the case, whose own has `n`: as many more as the background has cells.
+pub(crate) fn sizes<'a, const D: usize>(
+    case: &'a Case,
+    surface: Option<&'a Surface<D>>,
+    n: usize,
+) -> impl Fn(f64) -> f64 + 'a {
+    let cells = move |factor: f64| count(&CloudSpec::<D>::of_case(&scaled(case, factor)), surface, &[]).ok();
+    move |factor| {
+        let over = || Some(cells(factor)? as f64 / cells(1.0)? as f64);
+        let alike = || factor.powi(-(D as i32));
+        n as f64 * if factor == 1.0 { 1.0 } else { over().unwrap_or_else(alike) }
+    }
+}
+
+/// Particles of a cloud with `factor` times the spacing over those of the one with that spacing, about.
+pub(crate) fn alike(factor: f64, dimension: usize) -> f64 {
+    factor.powf(if dimension == 2 { -2.0 } else { -POWER })
+}
