@@ -421,12 +421,17 @@ impl fmt::Display for Kind {
                 let percent: f64 = format!("{:.9e}", 100.0 * tolerance).parse().unwrap_or(100.0 * tolerance);
                 write!(f, "{reference} ± {percent} %")
             }
-            Self::Absolute { reference, tolerance } => write!(f, "{reference} ± {tolerance}"),
+            Self::Absolute { reference, tolerance } => write!(f, "{reference} ± {}", plain(*tolerance)),
             Self::Range { low, high } => write!(f, "{low} to {high}"),
-            Self::AtMost(bound) => write!(f, "≤ {bound}"),
-            Self::AtLeast(bound) => write!(f, "≥ {bound}"),
+            Self::AtMost(bound) => write!(f, "≤ {}", plain(*bound)),
+            Self::AtLeast(bound) => write!(f, "≥ {}", plain(*bound)),
         }
     }
+}
+
+/// A number with as many digits as it has, and an exponent where it is very small or large.
+fn plain(number: f64) -> String {
+    if number == 0.0 || (1e-4..1e7).contains(&number.abs()) { number.to_string() } else { format!("{number:e}") }
 }
 
 impl Kind {
@@ -577,11 +582,11 @@ mod tests {
             Kind::Relative { reference: 0.28451, tolerance: 0.07 },
             Kind::Absolute { reference: 0.0, tolerance: 1e-4 },
             Kind::Range { low: 0.3, high: 0.4 },
-            Kind::AtMost(1.0),
+            Kind::AtMost(1e-11),
             Kind::AtLeast(6.0),
         ];
         let words =
-            ["relative 0.28451 ± 7 %", "absolute 0 ± 0.0001", "range 0.3 to 0.4", "at_most ≤ 1", "at_least ≥ 6"];
+            ["relative 0.28451 ± 7 %", "absolute 0 ± 0.0001", "range 0.3 to 0.4", "at_most ≤ 1e-11", "at_least ≥ 6"];
         assert_eq!(kinds.map(told), words);
         let file = ClaimFile::parse(GOOD).unwrap();
         assert_eq!(file.claims[1].title(Some("more")), "cd (wave drag; more)");

@@ -3,7 +3,6 @@ use serde::{Deserialize, Serialize};
 
 use super::super::flutter::Boundary;
 use super::Value;
-use crate::record::flutter::or_infinite;
 use crate::verify::{Claim, Metric};
 
 /// Part by which Mach numbers may differ.
@@ -30,7 +29,6 @@ struct Onset {
     speed_index: Option<f64>,
     frequency: f64,
     frequency_ratio: Option<f64>,
-    #[serde(deserialize_with = "or_infinite")]
     error: f64,
 }
 
@@ -39,7 +37,6 @@ struct Onset {
 struct Cycle {
     amplitude: f64,
     speed_index: Option<f64>,
-    #[serde(deserialize_with = "or_infinite")]
     error: f64,
     /// Amplitude of a march from it over its own, less one.
     marched: Option<f64>,

@@ -18,8 +18,6 @@ const WALL: [&str; 6] = ["wall_x", "wall_normal", "wall_area", "wall_x_c", "wall
 const POINTS: &str = "points";
 /// Names of the loads over the last period.
 const LOOPS: [&str; 2] = ["loop_cl", "loop_cd"];
-/// Name of the half widths of error bars.
-const HALF_WIDTHS: &str = "half_widths";
 
 impl Measured {
     /// What claims measure of a session whose case has been solved, with its `numbers`; `None` where it left no solution.
@@ -47,12 +45,11 @@ impl Measured {
         all.extend(self.field.columns.iter().map(|(name, _, values)| array(name, Cow::Borrowed(values))));
         all.extend(WALL.iter().zip(of_wall).map(|(name, values)| array(name, values)));
         all.extend(LOOPS.iter().zip([&self.loops.cl, &self.loops.cd]).map(|(name, v)| array(name, Cow::Borrowed(v))));
-        all.extend(self.numbers.half_widths.iter().map(|bars| array(HALF_WIDTHS, Cow::Borrowed(bars))));
         all
     }
 
     /// The run of `case` that a file holds, with its `numbers`; `None` where the file is of another kind.
-    pub(in super::super) fn from_file(case: &Case, mut numbers: Numbers, file: &Checkpoint<'_>) -> Option<Self> {
+    pub(in super::super) fn from_file(case: &Case, numbers: Numbers, file: &Checkpoint<'_>) -> Option<Self> {
         let values = |name: &str| file.f64(name).ok();
         let list = |name: &str| values(name).map(<[f64]>::to_vec);
         let vectors = |name: &str| Some(values(name)?.as_chunks::<3>().0.iter().map(|x| Vector(*x)).collect());
@@ -64,7 +61,6 @@ impl Measured {
             cp: list(WALL[4])?,
             cf: list(WALL[5])?,
         };
-        numbers.half_widths = values(HALF_WIDTHS).and_then(|bars| bars.try_into().ok());
         let columns = COLUMNS.into_iter().filter_map(|(name, parts)| Some((name, parts, list(name)?))).collect();
         let field = Snapshot { points: values(POINTS)?.as_chunks::<3>().0.to_vec(), columns };
         let loops = Loops { cl: list(LOOPS[0])?, cd: list(LOOPS[1])? };

@@ -48,8 +48,7 @@ pub(in super::super) struct Numbers {
     /// Motion of bodies on springs.
     pub(super) structure: Vec<StructureSummary>,
     /// Half widths of the error bars of lift, drag and moment that clouds alone give, whatever theory says; infinite where nothing is
-    /// known. JSON has no infinity, so they are kept beside.
-    #[serde(skip)]
+    /// known.
     pub(in super::super) half_widths: Option<[f64; 3]>,
 }
 

@@ -248,7 +248,7 @@ impl Store {
         let file = checkpoint::read(&self.path(key)?).ok().filter(|_| !stale)?;
         let part = |name: &str| file.meta.get(name).cloned().unwrap_or(Value::Null);
         let spent: Spent = serde_json::from_value(part("spent")).ok()?;
-        let found = match serde_json::from_value(part("found")).ok()? {
+        let found = match toml::from_str(part("found").as_str()?).ok()? {
             Head::Flow(numbers) => Ok(Found::Flow(Box::new(Measured::from_file(job.case, *numbers, &file)?))),
             Head::Structure(numbers) => Ok(Found::Structure(numbers)),
             Head::Flutter(numbers) => Ok(Found::Flutter(numbers)),
@@ -290,7 +290,7 @@ impl Store {
 }
 
 impl Ended {
-    fn write(&self, path: &Path) -> Result<(), checkpoint::CheckpointError> {
+    fn write(&self, path: &Path) -> Result<(), String> {
         let head = match &self.found {
             Ok(Found::Flow(run)) => Head::Flow(Box::new(run.numbers.clone())),
             Ok(Found::Structure(numbers)) => Head::Structure(numbers.clone()),
@@ -299,7 +299,10 @@ impl Ended {
             Err(why) => Head::Failed(why.clone()),
         };
         let fields = if let Ok(Found::Flow(run)) = &self.found { run.arrays() } else { Vec::new() };
-        checkpoint::write(path, &Checkpoint { meta: json!({ "spent": self.spent, "found": head }), fields })
+        // in TOML, which unlike JSON has words for numbers that are infinite or not known
+        let found = toml::to_string(&head).map_err(|e| e.to_string())?;
+        let file = Checkpoint { meta: json!({ "spent": self.spent, "found": found }), fields };
+        checkpoint::write(path, &file).map_err(|e| e.to_string())
     }
 }
 

@@ -13,7 +13,6 @@ mod wall_motion;
 pub use boundary::{Boundary, CaseReference, FlutterAt, Trim, Warning};
 pub use crossing::{Bars, Clearance, Doubt, FlutterRow, MotionRow};
 pub use cycle::{LimitCycle, MarchedCycle};
-pub use numbers::or_infinite;
 pub use shape::{Mark, NaturalMode, Share};
 pub use state_space::StateSpaceAt;
 pub use wall_motion::WallMotion;

@@ -2,7 +2,7 @@
 use serde::{Deserialize, Deserializer};
 
 /// A number that is infinite where the file has `null`.
-pub fn or_infinite<'de, D: Deserializer<'de>>(from: D) -> Result<f64, D::Error> {
+pub(super) fn or_infinite<'de, D: Deserializer<'de>>(from: D) -> Result<f64, D::Error> {
     Option::<f64>::deserialize(from).map(|x| x.unwrap_or(f64::INFINITY))
 }
 
