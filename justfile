@@ -28,13 +28,15 @@ test:
 test-long:
     cargo test --release --workspace -- --ignored
 
-# mutated inputs, killed runs, a public database of sections and odd surfaces, for the night; they print what is not survived
+# mutated inputs, killed runs, a public database of sections, odd surfaces, error bars of forces and shocks that come to rest, for the night; they print what is not survived
 night count="10000":
     cargo build --release
     tests/nightly/mutate.py target/release/alula --count {{count}} --seed $(date +%j)
     tests/nightly/kill.py target/release/alula --count 300 --seed $(date +%j)
     tests/nightly/sections.py target/release/alula
     tests/nightly/surfaces.py target/release/alula --plain
+    tests/nightly/forces.py target/release/alula
+    tests/nightly/steady.py target/release/alula
 
 # pages of the book in target/book, by mdBook 0.5
 pages:

@@ -25,7 +25,7 @@ Exit codes:
     0  every claim holds
     1  a claim fails
     2  wrong arguments or folders
-  130  interrupted";
+  130  interrupted; what was computed is kept, and the same command goes on";
 
 /// Aeroelastic loads from a surface file, without a mesh.
 #[derive(Debug, Parser)]
@@ -197,14 +197,23 @@ pub(crate) struct Compare {
 
 #[derive(Debug, Args)]
 pub(crate) struct Verify {
-    /// Only cases whose name contains this text.
-    pub(crate) filter: Option<String>,
+    /// Only cases whose names contain one of these texts.
+    pub(crate) filters: Vec<String>,
     /// Print one JSON object a line.
     #[arg(long)]
     pub(crate) json: bool,
-    /// Only cases that take seconds.
+    /// Only the shortest cases, which take ten minutes of processor time together.
     #[arg(long)]
     pub(crate) fast: bool,
+    /// Print the cases with the time that each took last and what it claims; compute nothing.
+    #[arg(long)]
+    pub(crate) list: bool,
+    /// Compute everything again, also what an earlier verification by this program has kept.
+    #[arg(long, conflicts_with = "list")]
+    pub(crate) again: bool,
+    /// Folder that keeps what is computed, by build of the program and case: after a stop the same command goes on.
+    #[arg(long, value_name = "DIR", default_value = "runs/verification")]
+    pub(crate) keep: PathBuf,
     /// Folder of the cases; default: `verification` here or above.
     #[arg(long, value_name = "DIR")]
     pub(crate) folder: Option<PathBuf>,
@@ -270,7 +279,10 @@ mod tests {
         assert!(Cli::try_parse_from(["alula", "run", "a.toml", "--threads", "0"]).is_err());
         assert!(Cli::try_parse_from(["alula", "run", "a.toml", "--json", "--quiet"]).is_err());
         assert!(Cli::try_parse_from(["alula", "new", "wing"]).is_err());
-        assert!(Cli::try_parse_from(["alula", "verify", "naca", "--fast"]).is_ok());
+        let cli = Cli::try_parse_from(["alula", "verify", "naca", "bow_shock", "--fast"]);
+        let Command::Verify(verify) = cli.unwrap().command else { panic!() };
+        assert_eq!((verify.filters.len(), verify.fast, verify.again), (2, true, false));
+        assert!(Cli::try_parse_from(["alula", "verify", "--list", "--again"]).is_err());
     }
 
     #[test]

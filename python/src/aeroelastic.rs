@@ -55,7 +55,7 @@ pub(crate) fn flutter(
         let Some(out) = folder else { return run::flutter::in_memory(&case, &input, forces.as_deref(), relay) };
         let places = Places { input, out };
         match &forces {
-            Some(forces) => run::flutter::again(&case, &places, forces, relay).map(Some),
+            Some(forces) => run::flutter::again(&case, &places, forces, relay),
             None => run::flutter::flutter(&case, &places, relay),
         }
     })?;

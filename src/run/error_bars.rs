@@ -36,8 +36,7 @@ const OF_HARMONICS: [f64; 2] = [1.0, 1.25];
 /// Step of the further run over that of the run: with implicit and with explicit methods.
 const LONGER: u32 = 2;
 const SHORTER: f64 = 0.5;
-/// Power of the length of an adaptive step that its tolerance goes with, and greatest tolerance.
-const OF_TOLERANCE: i32 = 3;
+/// Greatest tolerance of an adaptive step.
 const LOOSEST: f64 = 0.1;
 /// Multiples of the harmonics of a motion that are told.
 const TOLD: usize = 2;
@@ -262,12 +261,13 @@ fn stepped(case: &mut Case) -> Result<(f64, i32), String> {
         Temporal::Dual(plan) => {
             let order = i32::from(plan.order);
             if let Some(tolerance) = &mut plan.adaptive {
-                let own =
-                    std::mem::replace(tolerance, (*tolerance * f64::from(LONGER).powi(OF_TOLERANCE)).min(LOOSEST));
+                // the error of one step goes with this power of its length
+                let power = order + 1;
+                let own = std::mem::replace(tolerance, (*tolerance * f64::from(LONGER).powi(power)).min(LOOSEST));
                 if *tolerance == own {
                     return Err(format!("the tolerance of an adaptive step may not be more than {own}"));
                 }
-                return Ok(((*tolerance / own).cbrt(), order));
+                return Ok(((*tolerance / own).powf(1.0 / f64::from(power)), order));
             }
             if let Some(steps) = &mut plan.steps_per_period {
                 let own = *steps;
@@ -353,6 +353,9 @@ mod tests {
             panic!()
         };
         assert!((ratio - 2.0).abs() < 1e-12 && (plan.adaptive.unwrap() - 8e-3).abs() < 1e-15);
+        let first = "[time.dual]\nstep = 0.2\nuntil = 9\nadaptive = 1e-3\norder = 1";
+        let ((ratio, order), Temporal::Dual(plan)) = stepped(first).unwrap() else { panic!() };
+        assert!((ratio - 2.0).abs() < 1e-12 && (plan.adaptive.unwrap() - 4e-3).abs() < 1e-15 && order == 1);
         let ((ratio, order), Temporal::Explicit(plan)) = stepped("[time.explicit]\nuntil = 9").unwrap() else {
             panic!()
         };

@@ -44,6 +44,7 @@ use crate::physics::atmosphere;
 use crate::problem::coarser::{BETWEEN, COARSER, times_the_spacing};
 use crate::problem::solids::told_of_own_modes;
 use crate::problem::{Problem, RunError, StreamRatio, spacing, supported};
+use crate::record::flutter::remedy;
 pub use crate::record::flutter::{
     Bars, Boundary, CaseReference, Clearance, Doubt, FlutterAt, FlutterRow, LimitCycle, MarchedCycle, Mark, MotionRow,
     NaturalMode, Share, StateSpaceAt, Trim,
@@ -70,9 +71,14 @@ pub fn in_memory(
 }
 
 /// The same with the forces of a file, `flutter.json` of a former run or `gaf.json`: the boundary of the structure alone, without a flow.
-pub fn again(case: &Case, places: &Places, forces: &Path, monitor: &mut dyn Monitor) -> Result<Boundary, RunError> {
-    let found = sought(case, (&places.input, Some(&places.out)), Some(forces), monitor)?;
-    Ok(found.unwrap_or_else(|| Boundary::new(&case.title)))
+/// `None` when the monitor says stop.
+pub fn again(
+    case: &Case,
+    places: &Places,
+    forces: &Path,
+    monitor: &mut dyn Monitor,
+) -> Result<Option<Boundary>, RunError> {
+    sought(case, (&places.input, Some(&places.out)), Some(forces), monitor)
 }
 
 /// True where `out` holds a boundary that was interrupted.
@@ -142,7 +148,7 @@ fn sought(
                 monitor.note(&format!("Mach {mach} was finished before"));
                 Some((before, true))
             }
-            (None, None) => at_mach(problem, &plan, mach, monitor)?,
+            (None, None) => at_mach(problem, &plan, (mach, case.output.report && out.is_some()), monitor)?,
         };
         let Some((mut found, whole)) = found else { return Ok(None) };
         found.read = forces.map(|f| f.display().to_string());
@@ -256,18 +262,19 @@ fn goes_with_speed(case: &Case) -> bool {
     })
 }
 
-/// The boundary at one Mach number, and false where the monitor said stop in the march after it; `None` where it did before.
+/// The boundary at one Mach number, with the motions of the walls where they are `drawn`, and false where the monitor said stop in the
+/// march after it; `None` where it did before.
 fn at_mach(
     root: &Problem,
     plan: &Plan,
-    mach: f64,
+    (mach, drawn): (f64, bool),
     monitor: &mut dyn Monitor,
 ) -> Result<Option<(FlutterAt, bool)>, RunError> {
     let own = root.about_steady_flow(mach)?;
     let held = Held::of(&own);
     let scales = Scales::of(own.case(), held.chord, plan.matching);
     let lco = cycles_at(root.given(), mach);
-    let place = Place { problem: &own, held: &held, scales: &scales, plan, lco };
+    let place = Place { problem: &own, held: &held, scales: &scales, plan, lco, drawn };
     let marches = lco.is_some_and(|lco| lco.march);
     let part = |k: usize, shocks: bool| Portion::of(k, &place.parts(shocks, marches));
     let first = &mut Within { outer: part(0, false), monitor: &mut *monitor };
@@ -287,7 +294,7 @@ fn at_mach(
     let mut at = placed(at, (own.case(), mach), held, (&scales, plan));
     let whole = !marches || at.cycles.is_empty() || marched::march(root, &mut at, &mut Within { outer, monitor })?;
     if !whole {
-        at.warnings.push("told to stop while the limit cycle was marched: all else is whole".into());
+        at.warn(("told to stop while the limit cycle was marched: all else is whole".into(), remedy::CYCLES));
     }
     Ok(Some((at, whole)))
 }
@@ -310,6 +317,8 @@ struct Place<'a> {
     scales: &'a Scales,
     plan: &'a Plan,
     lco: Option<&'a LimitCycles>,
+    /// True where motions of the walls are drawn, which are cut out of the cloud for that.
+    drawn: bool,
 }
 
 impl Place<'_> {
@@ -339,7 +348,7 @@ impl Place<'_> {
         at.orders = summary.residual_drop.unwrap_or(0.0);
         (at.particles, at.cpu_seconds) = (summary.particles, summary.cpu_seconds);
         if !summary.succeeded() {
-            at.warnings.push("the steady flow did not converge: forces about it are doubtful".into());
+            at.warn(("the steady flow did not converge: forces about it are doubtful".into(), remedy::STEADY));
         }
         Ok(Some(at))
     }
@@ -354,6 +363,9 @@ impl Place<'_> {
         let forces = &mut *forces;
         let mut search = Search::new(self.held, self.scales, self.plan, Vec::new(), 0.0);
         let Some(mut at) = search.run((&mut *forces, stream), log) else { return Ok(None) };
+        if self.drawn {
+            search.show(&mut at, forces);
+        }
         (at.borne, at.supersonic) = (forces.borne(), forces.is_supersonic());
         if let Some(lco) = self.lco.filter(|_| cycles) {
             let springs = search::springs_of_the_case(forces.springs(), stream);
@@ -409,7 +421,7 @@ impl Place<'_> {
         });
         monitor.note(&format!("the same on a cloud with {}", times_the_spacing(ratio)));
         let plan = Plan { state_space: false, ..self.plan.clone() };
-        let place = Place { problem: &own, plan: &plan, ..*self };
+        let place = Place { problem: &own, plan: &plan, drawn: false, ..*self };
         // what that cloud is too coarse for is told by the difference
         match place.boundary((stream, false), &mut Quiet { monitor }) {
             Ok(Some(coarse)) => Ok(Asked::Told(Box::new(coarse))),
@@ -432,9 +444,8 @@ fn of_stored(root: &Problem, plan: &Plan, mach: f64, stored: &Stored) -> Result<
     if let Some(lco) = cycles_at(case, mach) {
         at.add_cycles(Seek::new(lco, &mut search, (held.springs.clone(), None))?.run(None));
         if lco.gas == GasResponse::Nonlinear && !at.cycles.is_empty() {
-            at.warnings.push(
-                "forces that are read are those of small motions: so are the limit cycles (`gas = \"linear\"`)".into(),
-            );
+            let what = "forces that are read are those of small motions: so are the limit cycles (`gas = \"linear\"`)";
+            at.warn((what.into(), remedy::CYCLES));
         }
     }
     Ok(placed(at, (own, mach), held, (&scales, plan)))

@@ -1,29 +1,30 @@
 //! The walk through `verification/`: every folder is a case with claims; each case runs, each claim is judged.
 //!
-//! Claims share runs: one for each case and spacing, kept until the walk ends, so that a claim may compare its case with
-//! another one. They stay in memory. A case that does not run fails its claims, with
-//! the reason in the place of the source, and the walk goes on.
-use std::collections::BTreeMap;
+//! Claims share runs, also with those of other cases that they compare with: [`store`] has them, in memory or in a folder where a later
+//! walk finds them. A case that does not run fails its claims, with the reason in the place of the source, and the walk goes on.
+mod folder;
+mod store;
+
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use super::flutter::{self, Boundary};
-use super::gaf::{self, Matrices};
 use super::measure::{self, Measured, Value};
-use super::monitor::{Monitor, Quiet};
-use super::outcome::Outcome;
-use super::session::Session;
-use super::solids::{self, SolidSummary};
-use crate::case::{Case, Length, read};
+use super::monitor::Monitor;
+use crate::case::Case;
 use crate::observe::loads::Coefficients;
-use crate::problem::RunError;
 use crate::verify::calibration::{KnownLoad, holding, median_ratio};
-use crate::verify::{Claim, ClaimFile, ClaimRow, Metric, Sample, Study, Table, metrics};
+use crate::verify::{Claim, ClaimRow, Metric, Sample, Table, metrics};
+use folder::{FILES, respaced, unreadable};
+use store::{Found, Job, Kind, Store};
+
+pub use folder::Folder;
+pub use store::{Keep, Spent, TimeTaken, build_of_this_program, times};
 
 /// Name of the folder of all cases.
 const FOLDER: &str = "verification";
-/// Files of one case.
-const FILES: [&str; 2] = ["case.toml", "claim.toml"];
+
+/// Processor seconds of the quick subset: ten minutes of one core, so that two cores take less.
+pub const QUICK: f64 = 600.0;
 
 /// By how much the angles of attack of an ensemble differ, radians: loads change by a hundred thousandth, chaos by all it can.
 const NEXT_TO_NOTHING: f64 = 1e-6;
@@ -50,9 +51,21 @@ pub enum WalkError {
         /// The mistakes.
         problem: String,
     },
+    /// A folder in which nothing can be kept.
+    #[error(
+        "cannot keep measurements in `{path}`: {problem}\nhint: choose a folder that you can write to with `--keep`"
+    )]
+    Keep {
+        /// The folder.
+        path: String,
+        /// What the system says.
+        problem: std::io::Error,
+    },
     /// Nothing to do.
-    #[error("no case is called so\nhint: `{folder}` holds {names}")]
+    #[error("no case {wanted}\nhint: `{folder}` holds {names}")]
     NoCase {
+        /// What was asked for.
+        wanted: String,
         /// The folder of all cases.
         folder: String,
         /// What there is.
@@ -60,26 +73,13 @@ pub enum WalkError {
     },
 }
 
-/// A folder with a case and what it claims.
-#[derive(Clone, Debug)]
-pub struct Folder {
-    /// Name of the folder.
-    pub name: String,
-    /// The folder.
-    pub path: PathBuf,
-    /// The case.
-    pub case: Case,
-    /// The claims.
-    pub claims: ClaimFile,
-}
-
 /// What to judge.
 #[derive(Clone, Debug, Default)]
 pub struct Selection {
-    /// Only cases whose name contains this.
-    pub filter: Option<String>,
-    /// Only the quick subset, without extrapolations.
-    pub fast: bool,
+    /// Only cases whose names contain one of these texts; all where there are none.
+    pub filters: Vec<String>,
+    /// Only cases that take so many processor seconds together, the shortest first, as their claim files say.
+    pub within: Option<f64>,
 }
 
 /// The folder `verification` in `from` or above it.
@@ -91,11 +91,7 @@ pub fn find(from: &Path) -> Result<PathBuf, WalkError> {
 pub struct Walk {
     folders: Vec<Folder>,
     chosen: Vec<usize>,
-    fast: bool,
-    runs: BTreeMap<(String, u64), Result<Measured, String>>,
-    structures: BTreeMap<String, Result<SolidSummary, String>>,
-    boundaries: BTreeMap<String, Result<Boundary, String>>,
-    forces: BTreeMap<String, Result<Matrices, String>>,
+    store: Store,
 }
 
 impl Walk {
@@ -107,17 +103,17 @@ impl Walk {
         let mut paths: Vec<PathBuf> = entries.filter_map(|e| Some(e.ok()?.path())).filter(is_case).collect();
         paths.sort();
         let folders: Vec<Folder> = paths.iter().map(|p| Folder::read(p)).collect::<Result<_, _>>()?;
-        let wanted = |f: &Folder| selection.filter.as_ref().is_none_or(|text| f.name.contains(text.as_str()));
-        let chosen: Vec<usize> = (0..folders.len())
-            .filter(|&k| wanted(&folders[k]) && (!selection.fast || folders[k].claims.fast))
-            .collect();
-        if chosen.is_empty() {
+        let chosen = selection.choose(&folders).map_err(|wanted| {
             let names = folders.iter().map(|f| format!("`{}`", f.name)).collect::<Vec<_>>().join(", ");
-            return Err(WalkError::NoCase { folder: root.display().to_string(), names });
-        }
-        let (runs, structures) = (BTreeMap::new(), BTreeMap::new());
-        let (boundaries, forces) = (BTreeMap::new(), BTreeMap::new());
-        Ok(Self { folders, chosen, fast: selection.fast, runs, structures, boundaries, forces })
+            WalkError::NoCase { wanted, folder: root.display().to_string(), names }
+        })?;
+        Ok(Self { folders, chosen, store: Store::default() })
+    }
+
+    /// Keeps all that is computed from now on, and takes from there what an earlier walk of the same build kept.
+    pub fn keep(&mut self, keep: Keep) -> Result<(), WalkError> {
+        let path = keep.folder.display().to_string();
+        self.store.keep(keep).map_err(|problem| WalkError::Keep { path, problem })
     }
 
     /// The cases to judge.
@@ -138,22 +134,27 @@ impl Walk {
     /// Judges the claims of case `k` of those chosen; `None` when the monitor says stop.
     pub fn judge(&mut self, k: usize, monitor: &mut dyn Monitor) -> Option<Vec<ClaimRow>> {
         let folder = self.folders[*self.chosen.get(k)?].clone();
-        let fast = self.fast;
-        let claims = folder.claims.claims.iter().filter(|c| !(fast && is_extrapolation(c.metric)));
+        self.store.begin();
         let mut rows = Vec::new();
-        for claim in claims {
+        for claim in &folder.claims.claims {
             let value = match &claim.case {
                 Some(file) => {
                     folder.beside(file).map_err(|e| e.to_string()).and_then(|other| self.sample(claim, &other, monitor))
                 }
                 None => self.sample(claim, &folder, monitor),
             };
-            rows.push(row(claim, &folder.name, value));
             if monitor.stop() {
                 return None;
             }
+            rows.push(row(claim, &folder.name, value));
         }
+        self.store.note_time(&folder.name, monitor);
         Some(rows)
+    }
+
+    /// What the case that was judged last needed, and what that took.
+    pub fn spent(&self) -> impl Iterator<Item = &Spent> {
+        self.store.spent()
     }
 
     /// The value of a claim, or the mean of its ensemble: runs whose angles of attack differ by next to nothing.
@@ -172,34 +173,41 @@ impl Walk {
 
     fn measure(&mut self, claim: &Claim, folder: &Folder, monitor: &mut dyn Monitor) -> Value {
         if !folder.case.has_gas() {
-            return measure::solid::value(self.structure(folder, monitor)?, claim);
+            let key = self.ensure(Kind::Structure, folder, &folder.case, monitor);
+            return match self.store.at(&key)? {
+                Found::Structure(numbers) => measure::solid::value(numbers, claim),
+                _ => Err("the case has no structure".into()),
+            };
         }
-        if claim.metric.is_of_flutter() {
-            let other = claim.other.as_ref().map(|name| self.named(name, folder)).transpose()?;
-            other.as_ref().map(|other| self.boundary(other, monitor).map(|_| ())).transpose()?;
-            self.boundary(folder, monitor)?;
-            let known = |f: &Folder| self.boundaries.get(&f.name).and_then(|b| b.as_ref().ok());
-            let own = known(folder).ok_or("the case did not run")?;
-            return measure::boundary::value(own, other.as_ref().and_then(known), claim);
+        match claim.metric {
+            m if m.is_of_flutter() => self.boundary(claim, folder, monitor),
+            m if m.is_of_forces() => self.forces(claim, folder, monitor),
+            m if m.needs_cases() => self.calibrate(claim, folder, monitor),
+            m if m.needs_study() => self.study(claim, folder, monitor),
+            _ => self.flow(claim, folder, monitor),
         }
-        if claim.metric.is_of_forces() {
-            return self.forces_of(claim, folder, monitor);
+    }
+
+    /// The metric of a flow, compared with the others that the claim names.
+    fn flow(&mut self, claim: &Claim, folder: &Folder, monitor: &mut dyn Monitor) -> Value {
+        let mut others = Vec::new();
+        for other in self.others(claim, folder)? {
+            let key = self.ensure(Kind::Flow, &other, &other.case, monitor);
+            self.store.flow(&key)?;
+            others.push(key);
         }
-        if claim.metric.needs_cases() {
-            return self.calibrate(claim, folder, monitor);
-        }
-        if !claim.metric.needs_study() {
-            let names = claim.other.iter().chain(&claim.third);
-            let others = names.map(|name| self.other(name, folder, monitor)).collect::<Result<Vec<_>, _>>()?;
-            let key = self.ensure(folder, &folder.case, monitor);
-            let others: Vec<_> = others.iter().filter_map(|key| self.runs.get(key)?.as_ref().ok()).collect();
-            return self.at(&key)?.value(claim, &folder.path, &others);
-        }
+        let own = self.ensure(Kind::Flow, folder, &folder.case, monitor);
+        let others = others.iter().map(|key| self.store.flow(key)).collect::<Result<Vec<&Measured>, _>>()?;
+        self.store.flow(&own)?.value(claim, &folder.path, &others)
+    }
+
+    /// Order or limit of a metric over the spacings of the study.
+    fn study(&mut self, claim: &Claim, folder: &Folder, monitor: &mut dyn Monitor) -> Value {
         let Some(study) = &folder.claims.study else { return Err("there is no `[study]`".into()) };
         let mut values = Vec::new();
         for &spacing in &study.spacings {
-            let key = self.ensure(folder, &respaced(&folder.case, spacing, study), monitor);
-            values.push(self.at(&key)?.value(claim, &folder.path, &[])?);
+            let key = self.ensure(Kind::Flow, folder, &respaced(&folder.case, spacing, study), monitor);
+            values.push(self.store.flow(&key)?.value(claim, &folder.path, &[])?);
         }
         let found = match claim.metric {
             Metric::Order | Metric::CpRmsOrder => metrics::observed_order(&study.spacings, &values),
@@ -208,68 +216,29 @@ impl Walk {
         found.ok_or_else(|| format!("the values {values:?} have no order or limit"))
     }
 
-    /// Computes a structure alone unless that has been done.
-    fn structure(&mut self, folder: &Folder, monitor: &mut dyn Monitor) -> Result<&SolidSummary, String> {
-        let name = folder.name.clone();
-        if !self.structures.contains_key(&name) && !monitor.stop() {
-            monitor.note(&name);
-            let job = solids::Job { case: &folder.case, input: &folder.path, out: None, from: None };
-            let found = solids::solve(&job, &mut Quiet { monitor });
-            let found = match found {
-                Ok(solids::Ended::Finished(found)) => Ok(found.summary),
-                Ok(solids::Ended::Interrupted(_)) => Err("the run was interrupted".into()),
-                Err(problem) => Err(reason(&problem)),
-            };
-            if let Ok(s) = &found {
-                monitor.note(&format!("{name}: {} particles, {:.1} s", s.particles, s.wall_seconds));
-            }
-            self.structures.insert(name.clone(), found);
-        }
-        let found = self.structures.get(&name).ok_or("the case did not run")?;
-        found.as_ref().map_err(Clone::clone)
-    }
-
-    /// Seeks a flutter boundary unless that has been done.
-    fn boundary(&mut self, folder: &Folder, monitor: &mut dyn Monitor) -> Result<&Boundary, String> {
-        let name = folder.name.clone();
-        if !self.boundaries.contains_key(&name) && !monitor.stop() {
-            monitor.note(&name);
-            let found = flutter::in_memory(&folder.case, &folder.path, None, &mut Quiet { monitor });
-            let found = match found {
-                Ok(Some(boundary)) => Ok(boundary),
-                Ok(None) => Err("the run was interrupted".into()),
-                Err(problem) => Err(reason(&problem)),
-            };
-            if let Ok(b) = &found {
-                let cpu: f64 = b.flutter.iter().map(|at| at.cpu_seconds).sum();
-                let particles = b.flutter.first().map_or(0, |at| at.particles);
-                monitor.note(&format!("{name}: {particles} particles, {cpu:.1} s of processor time"));
-            }
-            self.boundaries.insert(name.clone(), found);
-        }
-        let found = self.boundaries.get(&name).ok_or("the case did not run")?;
-        found.as_ref().map_err(Clone::clone)
-    }
-
-    /// Measures forces of small motions in the case of `folder` and in those that the claim names.
-    fn forces_of(&mut self, claim: &Claim, folder: &Folder, monitor: &mut dyn Monitor) -> Value {
-        let names = claim.other.iter().chain(&claim.third);
-        let others = names.map(|name| self.named(name, folder)).collect::<Result<Vec<_>, _>>()?;
-        let all: Vec<&Folder> = std::iter::once(folder).chain(&others).collect();
-        for one in &all {
-            if !self.forces.contains_key(&one.name) && !monitor.stop() {
-                monitor.note(&one.name);
-                let found = gaf::in_memory(&one.case, &one.path, &mut Quiet { monitor });
-                let found = found.map_err(|e| reason(&e)).and_then(|m| m.ok_or("the run was interrupted".into()));
-                self.forces.insert(one.name.clone(), found);
-            }
-        }
-        let known = |one: &&Folder| {
-            let found = self.forces.get(&one.name).ok_or("the case did not run")?;
-            found.as_ref().map_err(Clone::clone)
+    /// The metric of a flutter boundary, compared with the one that the claim names.
+    fn boundary(&mut self, claim: &Claim, folder: &Folder, monitor: &mut dyn Monitor) -> Value {
+        let other = claim.other.as_ref().map(|name| self.named(name, folder)).transpose()?;
+        let other = other.map(|other| self.ensure(Kind::Flutter, &other, &other.case, monitor));
+        let own = self.ensure(Kind::Flutter, folder, &folder.case, monitor);
+        let numbers = |key: &str| match self.store.at(key)? {
+            Found::Flutter(numbers) => Ok(numbers),
+            _ => Err(String::from("the case has no flutter boundary")),
         };
-        let matrices = all.iter().map(known).collect::<Result<Vec<_>, String>>()?;
-        let sections: Vec<_> = all.iter().map(|one| &one.case).zip(matrices).collect();
+        let other = other.as_deref().map(numbers).transpose()?;
+        measure::boundary::value(numbers(&own)?, other, claim)
+    }
+
+    /// Forces of small motions in the case of `folder` and in those that the claim names, against a table.
+    fn forces(&mut self, claim: &Claim, folder: &Folder, monitor: &mut dyn Monitor) -> Value {
+        let all: Vec<Folder> = std::iter::once(folder.clone()).chain(self.others(claim, folder)?).collect();
+        let keys: Vec<String> = all.iter().map(|one| self.ensure(Kind::Forces, one, &one.case, monitor)).collect();
+        let numbers = |key: &String| match self.store.at(key)? {
+            Found::Forces(forces) => Ok(&forces[..]),
+            _ => Err(String::from("the case has no forces")),
+        };
+        let forces = keys.iter().map(numbers).collect::<Result<Vec<_>, String>>()?;
+        let sections: Vec<_> = all.iter().map(|one| &one.case).zip(forces).collect();
         measure::forces::value(&sections, claim, &folder.path)
     }
 
@@ -282,12 +251,12 @@ impl Walk {
         let mut loads = Vec::new();
         for row in &known {
             let here = folder.beside(&row.case).map_err(|e| e.to_string())?;
-            let key = self.ensure(&here, &here.case, monitor);
-            let s = &self.at(&key)?.summary;
-            let family = s.grid_convergence.as_ref().ok_or_else(|| format!("`{}` has no error bars", row.case))?;
+            let key = self.ensure(Kind::Flow, &here, &here.case, monitor);
+            let numbers = &self.store.flow(&key)?.numbers;
             // those that need no theory, which is what they are held against
-            let bars = [family.cl, family.cd, family.cm].map(|load| load.told_by_clouds());
-            let found = row.found(three(&s.loads), bars).ok_or_else(|| wrong(&format!("no load `{}`", row.load)))?;
+            let bars = numbers.half_widths.ok_or_else(|| format!("`{}` has no error bars", row.case))?;
+            let found =
+                row.found(three(&numbers.loads), bars).ok_or_else(|| wrong(&format!("no load `{}`", row.load)))?;
             if claim.metric == Metric::BarsHolding {
                 monitor.note(&format!(
                     "{}: {} error {:.1e}, bar {:.1e}",
@@ -300,12 +269,9 @@ impl Walk {
         found.ok_or_else(|| wrong(&"no loads"))
     }
 
-    /// Runs the case that a claim compares with: that of another folder, or another file of this one.
-    fn other(&mut self, name: &str, here: &Folder, monitor: &mut dyn Monitor) -> Result<(String, u64), String> {
-        let folder = self.named(name, here)?;
-        let key = self.ensure(&folder, &folder.case, monitor);
-        self.at(&key)?;
-        Ok(key)
+    /// The cases that a claim compares with.
+    fn others(&self, claim: &Claim, here: &Folder) -> Result<Vec<Folder>, String> {
+        claim.other.iter().chain(&claim.third).map(|name| self.named(name, here)).collect()
     }
 
     /// The case that a claim compares with: that of another folder, or another file of this one.
@@ -320,69 +286,50 @@ impl Walk {
         }
     }
 
-    fn at(&self, key: &(String, u64)) -> Result<&Measured, String> {
-        match self.runs.get(key) {
-            Some(Ok(run)) => Ok(run),
-            Some(Err(problem)) => Err(problem.clone()),
-            None => Err("the case did not run".into()),
-        }
-    }
-
-    /// Runs a case at its spacing unless that has been done.
-    fn ensure(&mut self, folder: &Folder, case: &Case, monitor: &mut dyn Monitor) -> (String, u64) {
-        let key = (folder.name.clone(), spacing_of(case).to_bits());
-        if !self.runs.contains_key(&key) && !monitor.stop() {
-            let spacing = spacing_of(case);
-            monitor.note(&format!("{} at spacing {spacing}", folder.name));
-            let run = run(folder, case, monitor);
-            if let Ok(m) = &run {
-                let s = &m.summary;
-                let (n, it) = (s.particles, s.iterations);
-                monitor.note(&format!("{}: {n} particles, {it} iterations, {:.1} s", folder.name, s.wall_seconds));
-            }
-            self.runs.insert(key.clone(), run);
-        }
-        key
+    /// Computes `case` of `folder` unless that has been done; the key of what was found.
+    fn ensure(&mut self, kind: Kind, folder: &Folder, case: &Case, monitor: &mut dyn Monitor) -> String {
+        self.store.ensure(&Job { kind, name: &folder.name, case, folder: &folder.path }, monitor)
     }
 }
 
-impl Folder {
-    /// Reads one case with its claims.
-    pub fn read(path: &Path) -> Result<Self, WalkError> {
-        let [case, claims] = FILES.map(|name| path.join(name));
-        let text = |p: &Path| fs::read_to_string(p).map_err(|e| unreadable(p, e));
-        let wrong = |p: &Path, problem: String| WalkError::Mistakes { path: p.display().to_string(), problem };
-        let claims_read = ClaimFile::parse(&text(&claims)?).map_err(|e| wrong(&claims, e.to_string()))?;
-        let case_read = read(&text(&case)?, &case.display().to_string()).map_err(|e| wrong(&case, e.to_string()))?;
-        let name = path.file_name().map_or_else(String::new, |n| n.to_string_lossy().into_owned());
-        Ok(Self { name, path: path.to_path_buf(), case: case_read, claims: claims_read })
-    }
-}
-
-impl Folder {
-    /// Another case file of the same folder.
-    fn beside(&self, file: &str) -> Result<Self, WalkError> {
-        let path = self.path.join(file);
-        let text = fs::read_to_string(&path).map_err(|e| unreadable(&path, e))?;
-        let wrong = |e: crate::case::CaseErrors| WalkError::Mistakes {
-            path: path.display().to_string(),
-            problem: e.to_string(),
+impl Selection {
+    /// Numbers of the cases chosen; where there are none, what was asked for, to follow "no case".
+    fn choose(&self, folders: &[Folder]) -> Result<Vec<usize>, String> {
+        let holds = |name: &str, filter: &String| name.contains(filter.as_str());
+        if let Some(filter) = self.filters.iter().find(|filter| !folders.iter().any(|f| holds(&f.name, filter))) {
+            return Err(format!("is called like `{filter}`"));
+        }
+        let quick = self.within.map(|seconds| within(folders, seconds));
+        let wanted = |k: &usize| {
+            let named = self.filters.is_empty() || self.filters.iter().any(|filter| holds(&folders[*k].name, filter));
+            named && quick.as_ref().is_none_or(|quick| quick.contains(k))
         };
-        let case = read(&text, &path.display().to_string()).map_err(wrong)?;
-        Ok(Self { name: format!("{}/{file}", self.name), case, ..self.clone() })
+        let chosen: Vec<usize> = (0..folders.len()).filter(wanted).collect();
+        match self.within {
+            _ if !chosen.is_empty() => Ok(chosen),
+            Some(seconds) => {
+                Err(format!("of these is among the shortest that take {seconds} s of processor time together"))
+            }
+            None => Err("is there".into()),
+        }
     }
+}
+
+/// Numbers of the cases that take `most` processor seconds together, the shortest first, as far as their claim files say.
+fn within(folders: &[Folder], most: f64) -> Vec<usize> {
+    let known = folders.iter().enumerate().filter_map(|(k, f)| Some((f.claims.cpu_seconds?, k)));
+    let mut known: Vec<(f64, usize)> = known.collect();
+    known.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let mut sum = 0.0;
+    let fits = |(seconds, _): &(f64, usize)| {
+        sum += seconds;
+        sum <= most
+    };
+    known.into_iter().take_while(fits).map(|(_, k)| k).collect()
 }
 
 fn three(c: &Coefficients) -> [f64; 3] {
     [c.cl, c.cd, c.cm]
-}
-
-fn unreadable(path: &Path, problem: std::io::Error) -> WalkError {
-    WalkError::Unreadable { path: path.display().to_string(), problem }
-}
-
-fn is_extrapolation(metric: Metric) -> bool {
-    matches!(metric, Metric::ExtrapolatedCl | Metric::ExtrapolatedCd)
 }
 
 fn row(claim: &Claim, case: &str, value: Result<Sample, String>) -> ClaimRow {
@@ -392,54 +339,6 @@ fn row(claim: &Claim, case: &str, value: Result<Sample, String>) -> ClaimRow {
             let first = problem.replace('\n', "; ");
             ClaimRow { source: format!("no value: {first}"), ..claim.judge(case, f64::NAN) }
         }
-    }
-}
-
-/// Spacing of a case, zero where the program chooses it.
-fn spacing_of(case: &Case) -> f64 {
-    case.cloud.spacing.map_or(0.0, |l| l.0)
-}
-
-/// The case at another spacing.
-fn respaced(case: &Case, spacing: f64, study: &Study) -> Case {
-    let mut case = case.clone();
-    let factor = spacing / spacing_of(&case);
-    case.cloud.spacing = Some(Length(spacing));
-    if study.scale_boxes {
-        case.cloud.boxes.iter_mut().for_each(|b| b.spacing.0 *= factor);
-    }
-    if study.scale_layers {
-        case.cloud.layers = Some(case.cloud.particles_per_level() / factor);
-    }
-    if let Some(layers) = case.cloud.wall_layers.as_mut().filter(|_| study.scale_wall_layers) {
-        layers.first.0 *= factor;
-    }
-    if let Some(wake) = case.cloud.wake.as_mut().filter(|_| study.scale_wake) {
-        wake.spacing.0 *= factor;
-    }
-    case
-}
-
-/// Solves a case and keeps what can be measured.
-fn run(folder: &Folder, case: &Case, monitor: &mut dyn Monitor) -> Result<Measured, String> {
-    let mut session = Session::open(case, &folder.path).map_err(|e| reason(&e))?;
-    let ended = session.solve(&mut Quiet { monitor }).map_err(|e| reason(&e))?;
-    let Outcome::Finished(summary) = ended else { return Err("the run was interrupted".into()) };
-    let none = "the run left no solution";
-    Ok(Measured {
-        case: case.clone(),
-        summary: *summary,
-        field: session.field().ok_or(none)?.clone(),
-        wall: session.wall().ok_or(none)?,
-        loops: session.loops().ok_or(none)?.clone(),
-    })
-}
-
-/// What went wrong.
-fn reason(problem: &RunError) -> String {
-    match problem {
-        RunError::Time { source, .. } => source.to_string(),
-        other => other.to_string(),
     }
 }
 
@@ -466,15 +365,128 @@ mod tests {
         };
         let three = claim("free_stream_deviation", 1e-12) + &claim("particles", 1.0) + &claim("shock_upper", 1.0);
         write(root.path(), "a", &three);
-        write(root.path(), "b", &format!("fast = true\n{}", claim("cp_max_difference", 1.0)));
-        let mut walk = Walk::new(root.path(), &Selection { filter: Some("a".into()), fast: false }).unwrap();
+        write(root.path(), "b", &format!("cpu_seconds = 2\n{}", claim("cp_max_difference", 1.0)));
+        write(root.path(), "c", &format!("cpu_seconds = 1\n{}", claim("particles", 1.0)));
+        write(root.path(), "d", &format!("cpu_seconds = 3\n{}", claim("particles", 1.0)));
+        let named = |name: &str| Selection { filters: vec![name.into()], within: None };
+        let mut walk = Walk::new(root.path(), &named("a")).unwrap();
         assert_eq!(walk.len(), 1);
         let rows = walk.judge(0, &mut Silent).unwrap();
         assert_eq!(rows.iter().map(|r| r.pass).collect::<Vec<_>>(), [true, false, false], "{rows:?}");
         assert!(rows[2].value.is_nan() && rows[2].source.starts_with("no value: "), "{rows:?}");
-        let mut fast = Walk::new(root.path(), &Selection { filter: None, fast: true }).unwrap();
-        assert_eq!(fast.cases().map(|f| f.name.as_str()).collect::<Vec<_>>(), ["b"]);
-        assert!(!fast.judge(0, &mut Silent).unwrap()[0].pass);
+        let chosen = |filters: &[&str], within: Option<f64>| {
+            let filters = filters.iter().map(|&text| text.to_owned()).collect();
+            let walk = Walk::new(root.path(), &Selection { filters, within });
+            walk.map(|walk| walk.cases().map(|f| f.name.clone()).collect::<Vec<_>>())
+        };
+        assert_eq!(chosen(&["d", "a"], None).unwrap(), ["a", "d"]);
+        assert_eq!(chosen(&[], Some(3.5)).unwrap(), ["b", "c"]);
+        assert_eq!(chosen(&["b", "a"], Some(3.5)).unwrap(), ["b"]);
+        assert!(chosen(&["d"], Some(3.5)).unwrap_err().to_string().contains("among the shortest"));
+        assert!(chosen(&["a", "wing"], None).unwrap_err().to_string().contains("no case is called like `wing`"));
+        assert!(!Walk::new(root.path(), &named("b")).unwrap().judge(0, &mut Silent).unwrap()[0].pass);
+    }
+
+    /// What a walk finds of the case `a` and, of all that it needed, what was kept before.
+    fn kept(root: &Path, keep: &Keep) -> (Vec<ClaimRow>, Vec<bool>) {
+        let mut walk = Walk::new(root, &Selection::default()).unwrap();
+        walk.keep(keep.clone()).unwrap();
+        let rows = walk.judge(0, &mut Silent).unwrap();
+        let kept = walk.spent().map(|s| s.kept).collect();
+        (rows, kept)
+    }
+
+    #[test]
+    fn what_is_kept_is_not_computed_again() {
+        let root = tempfile::tempdir().unwrap();
+        let claim = |metric: &str, bound: f64| {
+            format!("[[claim]]\nmetric = \"{metric}\"\nkind = \"at_most\"\nreference = {bound}\nsource = \"s\"\n")
+        };
+        let study = "[study]\nspacings = [0.25, 0.125]\n";
+        let claims =
+            study.to_owned() + &claim("free_stream_deviation", 1e-12) + &claim("order", 9.0) + &claim("particles", 1.0);
+        write(root.path(), "a", &claims);
+        let folder = tempfile::tempdir().unwrap();
+        let of = |build: &str| Keep { folder: folder.path().join("deep"), build: build.into(), again: false };
+        let (first, fresh) = kept(root.path(), &of("one"));
+        assert_eq!(fresh.iter().filter(|kept| **kept).count(), 0);
+        let same =
+            |a: &[ClaimRow], b: &[ClaimRow]| a.iter().zip(b).all(|(a, b)| a.value.to_bits() == b.value.to_bits());
+        let (second, known) = kept(root.path(), &of("one"));
+        assert!(same(&first, &second) && known.iter().all(|kept| *kept) && known.len() == fresh.len(), "{second:?}");
+        // another claim of the same case is judged on what is there
+        write(root.path(), "a", &claims.replace("particles\"\nkind = \"at_most", "particles\"\nkind = \"at_least"));
+        let (third, known) = kept(root.path(), &of("one"));
+        assert!(third[2].pass != first[2].pass && known.iter().all(|kept| *kept));
+        // another case, another build and a wish for it compute
+        let again = Keep { again: true, ..of("one") };
+        assert!(kept(root.path(), &again).1.iter().all(|kept| !kept));
+        assert!(kept(root.path(), &of("two")).1.iter().all(|kept| !kept));
+        assert!(kept(root.path(), &of("one")).1.iter().all(|kept| *kept));
+        let case = root.path().join("a/case.toml");
+        fs::write(&case, CASE.replace("mach = 0.5", "mach = 0.6")).unwrap();
+        assert!(kept(root.path(), &of("one")).1.iter().all(|kept| !kept));
+        let taken = &times(&of("one").folder)["a"];
+        assert!(taken.build == "one" && taken.wall_seconds > 0.0);
+        // the oldest build makes room, what else is there stays
+        fs::create_dir(of("one").folder.join("mine")).unwrap();
+        for build in ["three", "four"] {
+            kept(root.path(), &of(build));
+        }
+        let there = |name: &str| of("one").folder.join(name).exists();
+        assert!(!there("build-two") || !there("build-one"));
+        assert!(there("build-four") && there("build-three") && there("mine"));
+    }
+
+    #[test]
+    fn a_file_that_a_case_names_is_part_of_it() {
+        let root = tempfile::tempdir().unwrap();
+        let claim = "[[claim]]\nmetric = \"cd\"\nkind = \"at_most\"\nreference = 9\nsource = \"s\"\n";
+        write(root.path(), "a", claim);
+        let diamond = |half: f64| format!("1 0\n0.5 {half}\n0 0\n0.5 {}\n1 0\n", -half);
+        let write = |name: &str, text: &str| fs::write(root.path().join("a").join(name), text).unwrap();
+        write(
+            "case.toml",
+            "[flow]\nmach = 2\n[[body]]\nfile = \"diamond.dat\"\n[cloud]\nspacing = 0.125\nfar_field = 2\n[time.steady]\norders = 2\n",
+        );
+        write("diamond.dat", &diamond(0.1));
+        let folder = tempfile::tempdir().unwrap();
+        let keep = Keep { folder: folder.path().to_owned(), build: "b".into(), again: false };
+        let (first, _) = kept(root.path(), &keep);
+        assert!(first[0].value > 0.0, "{first:?}");
+        let (second, known) = kept(root.path(), &keep);
+        assert_eq!((second[0].value, &known[..]), (first[0].value, &[true][..]));
+        write("diamond.dat", &diamond(0.12));
+        let (third, known) = kept(root.path(), &keep);
+        assert!(third[0].value > first[0].value && known == [false], "{third:?}");
+    }
+
+    /// Says stop as soon as it is asked.
+    struct Impatient;
+
+    impl Monitor for Impatient {
+        fn tick(&mut self, _: &crate::run::Tick) {}
+        fn note(&mut self, _: &str) {}
+        fn stop(&self) -> bool {
+            true
+        }
+    }
+
+    #[test]
+    fn a_run_that_was_stopped_is_not_kept() {
+        let root = tempfile::tempdir().unwrap();
+        write(
+            root.path(),
+            "a",
+            "[[claim]]\nmetric = \"particles\"\nkind = \"at_least\"\nreference = 1\nsource = \"s\"\n",
+        );
+        let folder = tempfile::tempdir().unwrap();
+        let keep = Keep { folder: folder.path().to_owned(), build: "b".into(), again: false };
+        let mut walk = Walk::new(root.path(), &Selection::default()).unwrap();
+        walk.keep(keep.clone()).unwrap();
+        assert!(walk.judge(0, &mut Impatient).is_none());
+        let (rows, known) = kept(root.path(), &keep);
+        assert!(rows[0].pass && known == [false]);
     }
 
     /// Slow flow about a sphere: Cp = 1 − 9/4 sin²θ, with sin²θ = 4 (x/c) (1 − x/c) in the plane through its middle.

@@ -1,7 +1,7 @@
 //! Claims: metrics of a run with their reference, tolerance and source.
 //!
 //! ```toml
-//! fast = true                  # part of the quick subset
+//! cpu_seconds = 12             # what the whole case takes, about; the quick subset is chosen by it
 //!
 //! [study]                      # rerun the case at these spacings, coarse to fine
 //! spacings = [0.02, 0.01, 0.005]
@@ -18,7 +18,7 @@
 //! `at_least` v ≥ r. A value that is not a number fails every claim.
 //!
 //! Claims whose metric needs a study (`order`, `cp_rms_order`, `extrapolated_…`) use the reruns of `[study]`; all others use the case as it
-//! stands. The quick subset judges the `fast` cases, without extrapolations: those rerun a case at its finest spacing.
+//! stands.
 use std::fmt;
 
 use crate::case::ClaimRow;
@@ -26,8 +26,8 @@ use crate::case::ClaimRow;
 /// The contents of a `claim.toml`.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ClaimFile {
-    /// Part of the quick subset.
-    pub fast: bool,
+    /// Processor seconds of the whole case, about; absent where it has not been measured. The quick subset is chosen by it.
+    pub cpu_seconds: Option<f64>,
     /// Spacings at which the case is rerun.
     pub study: Option<Study>,
     /// The claims, in the order of the file.
@@ -387,12 +387,14 @@ impl Claim {
         let (reference, error, tolerance, _) = self.kind.compare(value);
         let pass = ends.iter().all(|end| self.kind.compare(*end).3);
         let several = (sample.count > 1).then(|| format!("mean of {} runs, ± {:.1e}", sample.count, sample.scatter));
-        let words: Vec<&str> = self.label.iter().chain(&several).map(String::as_str).collect();
-        let words = if words.is_empty() { String::new() } else { format!(" ({})", words.join("; ")) };
-        let metric = format!("{}{words}", self.metric.name());
         ClaimRow {
             case: case.to_string(),
-            metric,
+            metric: self.title(several.as_deref()),
+            name: self.metric.name(),
+            label: self.label.clone(),
+            kind: self.kind.name(),
+            runs: sample.count,
+            scatter: sample.scatter,
             value,
             reference,
             error,
@@ -401,9 +403,49 @@ impl Claim {
             source: self.source.clone(),
         }
     }
+
+    /// The metric, with its label and `more` in brackets.
+    pub fn title(&self, more: Option<&str>) -> String {
+        let words: Vec<&str> = self.label.as_deref().into_iter().chain(more).collect();
+        let words = if words.is_empty() { String::new() } else { format!(" ({})", words.join("; ")) };
+        format!("{}{words}", self.metric.name())
+    }
+}
+
+impl fmt::Display for Kind {
+    /// What must hold: `0.5 ± 1 %`, `0 ± 0.001`, `0.3 to 0.4`, `≤ 1`, `≥ 6`.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            // ten digits, so that 0.07 is no 7.000000000000001 %
+            Self::Relative { reference, tolerance } => {
+                let percent: f64 = format!("{:.9e}", 100.0 * tolerance).parse().unwrap_or(100.0 * tolerance);
+                write!(f, "{reference} ± {percent} %")
+            }
+            Self::Absolute { reference, tolerance } => write!(f, "{reference} ± {}", plain(*tolerance)),
+            Self::Range { low, high } => write!(f, "{low} to {high}"),
+            Self::AtMost(bound) => write!(f, "≤ {}", plain(*bound)),
+            Self::AtLeast(bound) => write!(f, "≥ {}", plain(*bound)),
+        }
+    }
+}
+
+/// A number with as many digits as it has, and an exponent where it is very small or large.
+fn plain(number: f64) -> String {
+    if number == 0.0 || (1e-4..1e7).contains(&number.abs()) { number.to_string() } else { format!("{number:e}") }
 }
 
 impl Kind {
+    /// Its name in a claim file.
+    pub fn name(&self) -> &'static str {
+        match self {
+            Self::Relative { .. } => "relative",
+            Self::Absolute { .. } => "absolute",
+            Self::Range { .. } => "range",
+            Self::AtMost(_) => "at_most",
+            Self::AtLeast(_) => "at_least",
+        }
+    }
+
     /// Reference, error, tolerance and verdict for `value`.
     fn compare(&self, value: f64) -> (f64, f64, f64, bool) {
         match *self {
@@ -445,7 +487,7 @@ mod tests {
     use toml::Table;
 
     const GOOD: &str = r#"
-        fast = true
+        cpu_seconds = 12
         [study]
         spacings = [0.02, 0.01, 0.005]
         [[claim]]
@@ -471,7 +513,7 @@ mod tests {
     #[test]
     fn reads_a_file() {
         let file = ClaimFile::parse(GOOD).unwrap();
-        assert!(file.fast);
+        assert_eq!(file.cpu_seconds, Some(12.0));
         assert_eq!(file.study.unwrap().spacings.len(), 3);
         assert_eq!(file.claims[0].kind, Kind::Relative { reference: 0.28451, tolerance: 0.01 });
         assert_eq!(file.claims[1].judge("a", 0.021).metric, "cd (wave drag)");
@@ -534,6 +576,23 @@ mod tests {
     }
 
     #[test]
+    fn what_must_hold_is_told_in_words() {
+        let told = |kind: Kind| format!("{} {kind}", kind.name());
+        let kinds = [
+            Kind::Relative { reference: 0.28451, tolerance: 0.07 },
+            Kind::Absolute { reference: 0.0, tolerance: 1e-4 },
+            Kind::Range { low: 0.3, high: 0.4 },
+            Kind::AtMost(1e-11),
+            Kind::AtLeast(6.0),
+        ];
+        let words =
+            ["relative 0.28451 ± 7 %", "absolute 0 ± 0.0001", "range 0.3 to 0.4", "at_most ≤ 1e-11", "at_least ≥ 6"];
+        assert_eq!(kinds.map(told), words);
+        let file = ClaimFile::parse(GOOD).unwrap();
+        assert_eq!(file.claims[1].title(Some("more")), "cd (wave drag; more)");
+    }
+
+    #[test]
     fn a_mean_is_judged_with_its_scatter() {
         let sample = Sample::of(&[1.0, 1.2, 0.8, 1.0]);
         assert!((sample.mean - 1.0).abs() < 1e-15 && (sample.scatter - 0.163_299).abs() < 1e-6);
@@ -554,7 +613,7 @@ mod tests {
     #[test]
     fn reports_all_problems_at_once() {
         let text = r#"
-            fats = true
+            cpu_second = 3
             [[claim]]
             metric = "shock_uper"
             reference = 1
@@ -578,7 +637,7 @@ mod tests {
         "#;
         let text = ClaimFile::parse(text).unwrap_err().to_string();
         for expected in [
-            "unknown key `fats`\nhint: did you mean `fast`",
+            "unknown key `cpu_second`\nhint: did you mean `cpu_seconds`",
             "claim 1: unknown metric `shock_uper`\nhint: did you mean `shock_upper`",
             "claim 1: has no `source`",
             "claim 2: unknown kind `relativ`\nhint: did you mean `relative`",

@@ -14,7 +14,12 @@ impl ClaimFile {
             .map_err(|e: toml::de::Error| ClaimError { problems: vec![e.to_string().trim_end().to_string()] })?;
         let mut problems = Vec::new();
         let mut root = Keys::new(&table, String::new(), &mut problems);
-        let fast = root.boolean("fast").unwrap_or(false);
+        let cpu_seconds = root.number("cpu_seconds");
+        if cpu_seconds.is_some_and(|seconds| seconds <= 0.0) {
+            root.problem(
+                "`cpu_seconds` must be positive\nhint: `alula verify --list` has the time that the case took last",
+            );
+        }
         let study = root.table("study");
         let list = root.tables("claim");
         root.finish();
@@ -28,7 +33,7 @@ impl ClaimFile {
             let name = claim.metric.name();
             problems.push(format!("metric `{name}` needs several spacings\nhint: add `[study]` with `spacings`"));
         }
-        if problems.is_empty() { Ok(Self { fast, study, claims }) } else { Err(ClaimError { problems }) }
+        if problems.is_empty() { Ok(Self { cpu_seconds, study, claims }) } else { Err(ClaimError { problems }) }
     }
 }
 

@@ -43,6 +43,18 @@ history = "sin(100 * t)"
 name = "tip"
 at = [1.0, 0.0]
 """
+# bodies, walls and structures that `mutate.py` has too
+SPHERE = "[flow]\nmach = 0.3\n[[body]]\nsphere = { radius = 0.5 }\n"
+TRAVELLING = ('[flow]\nmach = 0.3\n[motion]\nparticles = "lagrangian"\nperiod = 4.0\nplunge = 0.1\n[[body]]\n'
+              "circle = { radius = 0.5 }\n")
+PANEL = ('[flow]\nmach = 0.5\npressure = "101 kPa"\ndensity = 1.2\n[[body]]\nbox = { size = [0.1, 1.0] }\n[body.solid]\n'
+         "through = 3\n[body.solid.material]\ndensity = 7600\nyoung = 2.2e11\npoisson = 0.33\n[[body.solid.support]]\n"
+         "where = { y_max = -0.4 }\n[cloud]\nspacing = 0.05\nfar_field = 4.0\n[time.dual]\nstep = 1e-4\n")
+IMPACT = BEAM.replace('fix = ["x", "y"]', 'fix = ["y"]')
+WALL = "[contact]\nplanes = [{ point = [-0.01, 0], normal = [1, 0] }]\n[time.explicit]\n"
+FLUTTER = ("[structure]\nelastic_axis = -0.5\nmass_ratio = 60.0\nx_alpha = 0.2\nr_alpha2 = 0.25\nfrequency_ratio = 0.5\n"
+           '[[body]]\nnaca = "0012"\n[cloud]\nspacing = 0.1\nfar_field = 3.0\n[flutter]\nmach = [0.3, 0.4, 0.5]\n'
+           "cloud_error = false\nreduced_frequencies = [0.1, 0.3]\n")
 PLUNGE = "[flow]\nmach = 0.5\n[motion]\nperiod = 8.0\nplunge = 0.05\n" + SECTION
 CASES = {
     "steady": STREAM + SECTION + END,
@@ -53,25 +65,19 @@ CASES = {
     "viscous": "[flow]\nmach = 0.3\nreynolds = 100\n" + SECTION + "wall_layers = { first = 0.01 }\n[time.steady]\norders = 4\n" + END,
     "dual": PLUNGE + "[time.dual]\nsteps_per_period = 16\nperiods = 1\n" + END,
     "explicit": PLUNGE + "[time.explicit]\nuntil = 0.5\n" + END,
-    "travelling": '[flow]\nmach = 0.3\n[motion]\nparticles = "lagrangian"\nperiod = 4.0\nplunge = 0.1\n[[body]]\n'
-                  "circle = { radius = 0.5 }\n[cloud]\nspacing = 0.1\nfar_field = 4.0\n[time.explicit]\nuntil = 1.0\n" + END,
+    "travelling": TRAVELLING + "[cloud]\nspacing = 0.1\nfar_field = 4.0\n[time.explicit]\nuntil = 1.0\n" + END,
     "harmonic": PLUNGE + "[time]\nharmonics = 2\n" + END,
     "structure": '[flow]\nmach = 0.8\n[motion]\nparticles = "rigid"\n[structure]\nelastic_axis = -0.6\nmass_ratio = 75.0\n'
                  "x_alpha = 0.25\nr_alpha2 = 0.75\nfrequency_ratio = 0.5\nspeed_index = 0.65\ninitial = { plunge = 0.01 }\n"
                  + SECTION + "[time.dual]\nstep = 1.0\nuntil = 10.0\n" + END,
     "polar": STREAM.replace('"2 deg"', '"0:3:1 deg"') + SECTION + END,
-    "space": "[flow]\nmach = 0.3\n[[body]]\nsphere = { radius = 0.5 }\n[cloud]\nspacing = 0.2\nfar_field = 3.0\n[time.steady]\norders = 3\n" + END,
+    "space": SPHERE + "[cloud]\nspacing = 0.2\nfar_field = 3.0\n[time.steady]\norders = 3\n" + END,
     "swing": BEAM + "[time.newmark]\nstep = 1e-3\nuntil = 2.0\n" + END,
-    "impact": BEAM.replace('fix = ["x", "y"]', 'fix = ["y"]').replace("gravity = ", "velocity = [-10, 0]\ngravity = ")
-              + "[contact]\nplanes = [{ point = [-0.01, 0], normal = [1, 0] }]\n[time.explicit]\nuntil = 0.05\n" + END,
+    "impact": IMPACT.replace("gravity = ", "velocity = [-10, 0]\ngravity = ") + WALL + "until = 0.05\n" + END,
     "vibration": BEAM.replace("gravity = ", "stiffness_damping = 1e-5\ngravity = ").replace("100 * t", "omega * t")
                  + '[time.harmonics]\nnumber = 2\nfrequency = "40 Hz"\n' + END,
-    "panel": '[flow]\nmach = 0.5\npressure = "101 kPa"\ndensity = 1.2\n[[body]]\nbox = { size = [0.1, 1.0] }\n[body.solid]\nthrough = 3\n'
-             "[body.solid.material]\ndensity = 7600\nyoung = 2.2e11\npoisson = 0.33\n[[body.solid.support]]\nwhere = { y_max = -0.4 }\n"
-             "[cloud]\nspacing = 0.05\nfar_field = 4.0\n[time.dual]\nstep = 1e-4\nuntil = 1e-3\n" + END,
-    "flutter": "[flow]\nmach = 0.5\n[structure]\nelastic_axis = -0.5\nmass_ratio = 60.0\nx_alpha = 0.2\nr_alpha2 = 0.25\n"
-               'frequency_ratio = 0.5\n[[body]]\nnaca = "0012"\n[cloud]\nspacing = 0.1\nfar_field = 3.0\n[flutter]\n'
-               "mach = [0.3, 0.4, 0.5]\ncloud_error = false\nreduced_frequencies = [0.1, 0.3]\n",
+    "panel": PANEL + "until = 1e-3\n" + END,
+    "flutter": "[flow]\nmach = 0.5\n" + FLUTTER,
     "gaf": "[flow]\nmach = 0.5\n" + SECTION + '[gaf]\nreduced_frequencies = [0.3]\nmodes = "plunge"\n' + END,
 }
 # what tells of the machine and of time, not of the flow

@@ -29,7 +29,8 @@ import tempfile
 import time
 import zlib
 
-from kill import BEAM, results
+import kill
+from kill import BEAM, STREAM, results
 
 MEMORY = 2 << 30
 # of the processor; and of the clock, for what waits forever
@@ -37,33 +38,23 @@ SECONDS = 20
 PATIENCE = 300
 GOOD_CODES = {0, 1, 2, 130}
 
-STREAM = '[flow]\nmach = 0.5\nalpha = "2 deg"\n'
 SMALL = '[cloud]\nspacing = 0.1\nfar_field = 3.0\n[time.steady]\niterations = 2\n[output]\ncheckpoint = 1\nreport = false\n'
 SECTION = STREAM + '[[body]]\nnaca = "0012"\n' + SMALL
 MARCH = STREAM.replace(' = "2 deg"', " = 0") + (
     '[motion]\nperiod = 4.0\nplunge = 0.1\n[[body]]\nnaca = "0012"\n[cloud]\nspacing = 0.1\nfar_field = 3.0\n'
     "[time.dual]\nsteps_per_period = 8\nperiods = 0.5\n[output]\ncheckpoint = 1\nreport = false\n")
-TRAVEL = ('[flow]\nmach = 0.3\n[motion]\nparticles = "lagrangian"\nperiod = 4.0\nplunge = 0.1\n[[body]]\n'
-          "circle = { radius = 0.5 }\n[cloud]\nspacing = 0.125\nfar_field = 3.0\n[time.explicit]\nuntil = 0.4\n"
-          "[output]\ncheckpoint = 1\nreport = false\n")
+LOOKED_AT = "[output]\ncheckpoint = 1\nreport = false\n"
+TRAVEL = kill.TRAVELLING + "[cloud]\nspacing = 0.125\nfar_field = 3.0\n[time.explicit]\nuntil = 0.4\n" + LOOKED_AT
 BALANCE = MARCH.replace("[time.dual]\nsteps_per_period = 8\nperiods = 0.5\n", "[time]\nharmonics = { number = 1, iterations = 3 }\n")
-SWING = BEAM + "[time.newmark]\nstep = 1e-3\nuntil = 0.05\n[output]\ncheckpoint = 1\nreport = false\n"
-IMPACT = BEAM.replace('fix = ["x", "y"]', 'fix = ["y"]') + (
-    "[contact]\nplanes = [{ point = [-0.01, 0], normal = [1, 0] }]\n"
-    "[time.explicit]\nuntil = 2e-4\n[output]\ncheckpoint = 1\nreport = false\n")
+SWING = BEAM + "[time.newmark]\nstep = 1e-3\nuntil = 0.05\n" + LOOKED_AT
+IMPACT = kill.IMPACT + kill.WALL + "until = 2e-4\n" + LOOKED_AT
 SOLID_SPACE = BEAM.replace("[1.0, 0.2]", "[1.0, 0.25, 0.25]").replace("translate = [0.5, 0]", "translate = [0.5, 0, 0]").replace(
     "[0, -9.81]", "[0, -9.81, 0]").replace("[0, 1000]", "[0, 1000, 0]").replace("[1.0, 0.0]", "[1.0, 0.0, 0.0]").replace(
     '["x", "y"]', '["x", "y", "z"]').replace('history = "sin(100 * t)"\n', "") + "[time.modes]\nnumber = 2\n"
-PANEL = ('[flow]\nmach = 0.5\npressure = "101 kPa"\ndensity = 1.2\n[[body]]\nbox = { size = [0.1, 1.0] }\n[body.solid]\n'
-         "through = 3\n[body.solid.material]\ndensity = 7600\nyoung = 2.2e11\npoisson = 0.33\n[[body.solid.support]]\n"
-         "where = { y_max = -0.4 }\n[cloud]\nspacing = 0.05\nfar_field = 4.0\n[time.dual]\nstep = 1e-4\nuntil = 4e-4\n"
-         "[output]\ncheckpoint = 1\nreport = false\n")
+PANEL = kill.PANEL + "until = 4e-4\n" + LOOKED_AT
 POLAR = SECTION.replace('"2 deg"', '"0:4:1 deg"').replace("iterations = 2", "orders = 3")
-FLUTTER = STREAM.replace(' = "2 deg"', " = 0") + (
-    "[structure]\nelastic_axis = -0.5\nmass_ratio = 60.0\nx_alpha = 0.2\nr_alpha2 = 0.25\nfrequency_ratio = 0.5\n"
-    '[[body]]\nnaca = "0012"\n[cloud]\nspacing = 0.1\nfar_field = 3.0\n[flutter]\nmach = [0.3, 0.4, 0.5]\ncloud_error = false\n'
-    "reduced_frequencies = [0.1, 0.3]\n[output]\nreport = false\n")
-SPHERE = "[flow]\nmach = 0.3\n[[body]]\nsphere = { radius = 0.5 }\n" + SMALL.replace("0.1\n", "0.4\nlayers = 3\n").replace("3.0", "2.0")
+FLUTTER = STREAM.replace(' = "2 deg"', " = 0") + kill.FLUTTER + "[output]\nreport = false\n"
+SPHERE = kill.SPHERE + SMALL.replace("0.1\n", "0.4\nlayers = 3\n").replace("3.0", "2.0")
 STARTS = {"steady": SECTION, "march": MARCH, "travel": TRAVEL, "balance": BALANCE, "space": SPHERE, "polar": POLAR, "flutter": FLUTTER,
           "swing": SWING, "impact": IMPACT, "panel": PANEL}
 # what a run has found already, and goes on with

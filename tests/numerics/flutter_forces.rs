@@ -52,7 +52,8 @@ fn forces_of_small_motions_are_those_of_harmonic_balance_and_give_a_boundary() {
 fn again(folder: &Path, name: &str, text: &str) -> Result<Boundary, String> {
     let case = case::read(text, name).unwrap_or_else(|e| panic!("{e}"));
     let places = Places { input: folder.into(), out: folder.join(name) };
-    run::flutter::again(&case, &places, &folder.join("flutter/flutter.json"), &mut Silent).map_err(|e| e.to_string())
+    let found = run::flutter::again(&case, &places, &folder.join("flutter/flutter.json"), &mut Silent);
+    found.map_err(|e| e.to_string()).map(|boundary| boundary.unwrap())
 }
 
 fn flutter_of(boundary: &Boundary) -> FlutterRow {

@@ -24,7 +24,7 @@ pub(crate) fn flutter(args: &arguments::Flutter) -> Outcome {
     let mut watch = Watch::new(args.verbosity);
     let places = Places { input, out: out.clone() };
     let found = match &args.forces {
-        Some(file) => run::flutter::again(&case, &places, file, &mut watch).map(Some),
+        Some(file) => run::flutter::again(&case, &places, file, &mut watch),
         None => run::flutter::flutter(&case, &places, &mut watch),
     };
     tell(found, &out, &mut watch, args.verbosity)
@@ -77,8 +77,9 @@ fn page(out: &Path) -> String {
 
 /// The first Mach number whose result is doubtful.
 fn shortfall(boundary: &Boundary) -> Option<Shortfall> {
-    let (at, what) = boundary.flutter.iter().find_map(|at| at.warnings.first().map(|w| (at, w)))?;
-    Some(Shortfall { what: format!("Mach {}: {what}", at.mach), hint: at.remedy(what).into() })
+    let first = |at: &FlutterAt| Some((at.mach, at.warnings.first()?.clone(), at.remedies.first()?.clone()));
+    let (mach, what, hint) = boundary.flutter.iter().find_map(first)?;
+    Some(Shortfall { what: format!("Mach {mach}: {what}"), hint })
 }
 
 /// All crossings, for people.

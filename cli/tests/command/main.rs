@@ -8,3 +8,4 @@ mod interrupted;
 mod refused;
 mod summary;
 mod tables;
+mod verify;

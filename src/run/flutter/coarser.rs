@@ -2,7 +2,7 @@
 use super::damping::{Pair, What, curves, pairs, safety};
 use super::scales::Scales;
 use crate::problem::coarser::times_the_spacing;
-use crate::record::flutter::{Doubt, FlutterAt};
+use crate::record::flutter::{Doubt, FlutterAt, remedy};
 
 /// Tells the error that the cloud leaves in each crossing of `at`, and where the cloud decides whether motions grow, from the boundaries
 /// on coarser clouds, each with its spacing over that of `at`.
@@ -21,7 +21,7 @@ pub(super) fn compare(at: &mut FlutterAt, others: &[(f64, FlutterAt)], scales: &
         }
     }
     at.coarser_particles = others.iter().map(|(_, coarse)| coarse.particles).min().unwrap_or(0);
-    at.warnings.extend(doubts.iter().map(|doubt| in_words(doubt, at.dimensional)));
+    doubts.iter().for_each(|doubt| at.warn((in_words(doubt, at.dimensional), remedy::SPACING)));
     at.doubts = doubts;
 }
 

@@ -15,7 +15,7 @@ use super::search::Search;
 use crate::case::{GasResponse, LimitCycles};
 use crate::observe::structure::is_angle;
 use crate::problem::RunError;
-use crate::record::flutter::LimitCycle;
+use crate::record::flutter::{LimitCycle, Warning, remedy};
 use crate::structure::Spring;
 use crate::structure::flutter::Kind;
 use crate::structure::limit_cycle::{Borne, Cycle, Oscillator, Periodic};
@@ -89,17 +89,19 @@ impl<'s, 'a> Seek<'s, 'a> {
     }
 
     /// All branches; forces beyond small motions are those of `source`, where there is one and the case asks for them.
-    pub(super) fn run(mut self, mut source: Source<'_, '_>) -> (Vec<LimitCycle>, Vec<String>) {
+    pub(super) fn run(mut self, mut source: Source<'_, '_>) -> (Vec<LimitCycle>, Vec<Warning>) {
         let (amplitudes, mut warnings) = (self.plan.amplitudes(), Vec::new());
         let mut begins = self.begins(amplitudes[0]);
         // amplitudes follow what is varied from where forces act
         let all = begins.len();
         begins.retain(|(_, cycle)| cycle.x > 0.0);
         if begins.len() < all {
-            warnings.push("a motion of the least amplitude grows in however thin a gas: no branch begins there".into());
+            let what = "a motion of the least amplitude grows in however thin a gas: no branch begins there";
+            warnings.push((what.into(), remedy::DAMPING));
         }
         if begins.is_empty() {
-            warnings.push("no motion of the least amplitude neither grows nor decays up to the greatest speed".into());
+            let what = "no motion of the least amplitude neither grows nor decays up to the greatest speed";
+            warnings.push((what.into(), remedy::SEE));
         }
         let mut all = Vec::new();
         for (number, (kind, first)) in begins.into_iter().enumerate() {
@@ -109,7 +111,8 @@ impl<'s, 'a> Seek<'s, 'a> {
                     Ok(point) => points.push(point),
                     Err(why) => {
                         let told = self.told(*amplitude);
-                        warnings.push(format!("branch {} of limit cycles ends before {told}: {why}", number + 1));
+                        let what = format!("branch {} of limit cycles ends before {told}: {why}", number + 1);
+                        warnings.push((what, remedy::CYCLES));
                         break;
                     }
                 }
@@ -119,10 +122,11 @@ impl<'s, 'a> Seek<'s, 'a> {
         let open = all.iter().find(|row: &&LimitCycle| row.error > self.plan.accuracy);
         warnings.extend(open.map(|row| {
             let part = 100.0 * row.error.min(1.0);
-            format!(
+            let what = format!(
                 "the limit cycle of amplitude {} is known to {part:.1} % only: allow more `harmonics`",
                 row.amplitude
-            )
+            );
+            (what, remedy::HARMONICS)
         }));
         (all, warnings)
     }

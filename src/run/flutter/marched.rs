@@ -11,7 +11,7 @@ use super::super::watch::Alike;
 use crate::observe::structure::is_angle;
 use crate::observe::swing::Swing;
 use crate::problem::{March, Problem, RunError, StreamRatio};
-use crate::record::flutter::{FlutterAt, LimitCycle, MarchedCycle};
+use crate::record::flutter::{FlutterAt, LimitCycle, MarchedCycle, remedy};
 
 /// Periods, at most.
 const MOST: f64 = 30.0;
@@ -20,7 +20,7 @@ const MOST: f64 = 30.0;
 pub(super) fn march(problem: &Problem, at: &mut FlutterAt, monitor: &mut dyn Monitor) -> Result<bool, RunError> {
     let stable = at.cycles.iter().enumerate().filter(|(_, c)| c.stable);
     let Some(largest) = stable.max_by(|a, b| a.1.amplitude.total_cmp(&b.1.amplitude)).map(|(k, _)| k) else {
-        at.warnings.push("no limit cycle is stable: there is none to march".into());
+        at.warn(("no limit cycle is stable: there is none to march".into(), remedy::CYCLES));
         return Ok(true);
     };
     let cycle = &at.cycles[largest];
@@ -44,18 +44,19 @@ pub(super) fn march(problem: &Problem, at: &mut FlutterAt, monitor: &mut dyn Mon
         Ok(Outcome::Finished(summary)) => summary,
         Ok(_) => return Ok(false),
         Err(problem) => {
-            at.warnings
-                .push(format!("the march from the limit cycle of amplitude {:.4} failed: {problem}", cycle.amplitude));
+            let what = format!("the march from the limit cycle of amplitude {:.4} failed: {problem}", cycle.amplitude);
+            at.warn((what, remedy::MARCH));
             return Ok(true);
         }
     };
     let place = summary.structure.iter().flat_map(|s| &s.coordinates).position(|c| c.name == *name);
     let Some(swing) = place.and_then(|k| summary.swings.get(k).copied().flatten()) else {
-        at.warnings.push(format!("{name} does not swing at the end of the march from its limit cycle"));
+        let what = format!("{name} does not swing at the end of the march from its limit cycle");
+        at.warn((what, remedy::CYCLES));
         return Ok(true);
     };
     let found = told(cycle, &swing, summary.time / period, summary.cpu_seconds);
-    at.warnings.extend(doubts(&found, cycle.amplitude));
+    doubts(&found, cycle.amplitude).into_iter().for_each(|what| at.warn((what, remedy::MARCH)));
     at.cycles[largest].march = Some(found);
     Ok(true)
 }

@@ -13,7 +13,9 @@ use super::wall_motion::{Pressures, wall_motion};
 use crate::case::Flutter as Plan;
 use crate::math::rational::Rational;
 use crate::problem::StreamRatio;
-use crate::record::flutter::{Bars, FlutterAt, FlutterRow, Mark, MotionRow, NaturalMode, StateSpaceAt};
+use crate::record::flutter::{
+    Bars, FlutterAt, FlutterRow, Mark, MotionRow, NaturalMode, StateSpaceAt, Warning, remedy,
+};
 use crate::structure::flutter::{Branch, Crossing, Flutter, Kind, Point, StillMotions};
 use crate::structure::{Matrices, Spring};
 
@@ -169,14 +171,12 @@ impl<'a> Search<'a> {
             solved = self.solved(&self.samples);
             errors = solved.crossings.iter().map(|c| changed(c, &before)).collect();
         }
-        let warnings = self.doubts(&solved.crossings, &mut errors, "allow more `frequencies`");
-        let mut found = self.told(&solved, &errors, warnings);
-        self.show(&mut found, source);
-        Some(found)
+        let warnings = self.doubts(&solved.crossings, &mut errors, ("allow more `frequencies`", remedy::FREQUENCIES));
+        Some(self.told(&solved, &errors, warnings))
     }
 
     /// Adds the walls as they move at the crossings of a boundary, with the pressure on them.
-    fn show(&self, found: &mut FlutterAt, source: &dyn ForceSource) {
+    pub(super) fn show(&self, found: &mut FlutterAt, source: &dyn ForceSource) {
         if found.crossings.is_empty() {
             return;
         }
@@ -191,9 +191,11 @@ impl<'a> Search<'a> {
     pub(super) fn again(&self) -> FlutterAt {
         let solved = self.solved(&self.samples);
         let mut errors: Vec<f64> = solved.crossings.iter().map(|c| self.without_nearest(c)).collect();
-        let mut warnings = self.doubts(&solved.crossings, &mut errors, "forces that are read cannot be refined there");
+        let refined = ("forces that are read cannot be refined there", remedy::SEE);
+        let mut warnings = self.doubts(&solved.crossings, &mut errors, refined);
         if self.samples.first().is_none_or(|s| s.0 > 0.0) {
-            warnings.push("there are no forces at rest: speeds of divergence are extrapolated".into());
+            let what = "there are no forces at rest: speeds of divergence are extrapolated";
+            warnings.push((what.into(), remedy::SEE));
         }
         self.told(&solved, &errors, warnings)
     }
@@ -211,7 +213,7 @@ impl<'a> Search<'a> {
     }
 
     /// What is not known well enough; sets the errors of divergence.
-    fn doubts(&self, crossings: &[Crossing], errors: &mut [f64], hint: &str) -> Vec<String> {
+    fn doubts(&self, crossings: &[Crossing], errors: &mut [f64], (hint, remedy): (&str, &'static str)) -> Vec<Warning> {
         let mut warnings = Vec::new();
         let still = self.samples.first().is_some_and(|s| s.0 == 0.0);
         for (crossing, error) in crossings.iter().zip(errors) {
@@ -222,7 +224,8 @@ impl<'a> Search<'a> {
             if *error > self.plan.accuracy {
                 let part = 100.0 * error.min(1.0);
                 let place = crossing.pressure.sqrt();
-                warnings.push(format!("the crossing at {place:.4} of the speed is known to {part:.1} % only: {hint}"));
+                let what = format!("the crossing at {place:.4} of the speed is known to {part:.1} % only: {hint}");
+                warnings.push((what, remedy));
             }
         }
         warnings
@@ -314,17 +317,19 @@ impl<'a> Search<'a> {
         (found, self.plan.state_space.then(system).flatten())
     }
 
-    fn told(&self, solved: &Solved, errors: &[f64], mut warnings: Vec<String>) -> FlutterAt {
+    fn told(&self, solved: &Solved, errors: &[f64], mut warnings: Vec<Warning>) -> FlutterAt {
         let (s, crossings) = (self.scales, &solved.crossings);
         if solved.branches.iter().all(Vec::is_empty) && solved.still.growing.is_empty() {
-            warnings.push(format!(
+            let what = format!(
                 "no motion has a reduced frequency below {:.3}, twice the highest known: give higher `reduced_frequencies`",
                 BEYOND * s.reduced_frequency(self.highest())
-            ));
+            );
+            warnings.push((what, remedy::HIGHER));
         }
         let (names, told): (Vec<_>, Vec<_>) = self.grow_from_the_start(solved).into_iter().unzip();
         let growing_from_start = names.into_iter().flatten().collect();
-        warnings.extend::<Vec<String>>(told);
+        warnings.extend::<Vec<Warning>>(told);
+        let (warnings, remedies) = warnings.into_iter().map(|(what, remedy)| (what, remedy.to_owned())).unzip();
         let notes = self.of_a_free_body(solved).into_iter().collect();
         let (checks, state_space) = self.checked(crossings);
         let rows = crossings.iter().zip(errors).zip(&checks);
@@ -348,13 +353,14 @@ impl<'a> Search<'a> {
             residual: self.residual,
             growing_from_start,
             warnings,
+            remedies,
             notes,
             ..FlutterAt::default()
         }
     }
 
     /// What grows already where it is told for the first time: its name where it has no crossing, and words.
-    fn grow_from_the_start(&self, solved: &Solved) -> Vec<(Option<String>, String)> {
+    fn grow_from_the_start(&self, solved: &Solved) -> Vec<(Option<String>, Warning)> {
         let grows = |(m, point): &(usize, Point)| {
             let mut own = solved.crossings.iter().filter(|c| c.branch == Branch::Mode(*m) && c.x <= point.x);
             let (name, damping) = (name(Branch::Mode(*m)), 2.0 * point.lambda.re / point.lambda.norm());
@@ -366,10 +372,10 @@ impl<'a> Search<'a> {
                         self.scales.named(),
                         point.x
                     );
-                    Some((Some(name), words))
+                    Some((Some(name), (words, remedy::LOWEST)))
                 }
                 Some(c) if c.x == 0.0 && c.kind == Kind::Flutter => {
-                    Some((None, self.words_from_zero(&name, point, damping)))
+                    Some((None, (self.words_from_zero(&name, point, damping), remedy::DAMPING)))
                 }
                 Some(_) => None,
             }

@@ -9,7 +9,7 @@ use super::scales::Scales;
 use crate::case::{Flutter as Plan, Matching};
 use crate::problem::RunError;
 use crate::problem::StreamRatio;
-use crate::record::flutter::{FlutterAt, Trim};
+use crate::record::flutter::{FlutterAt, Trim, remedy};
 
 /// Equilibria that are sought at most.
 const ROUNDS: usize = 12;
@@ -52,10 +52,11 @@ pub(super) fn trimmed(
                 let first = at.crossings.iter_mut().find(|c| c.kind != "restabilised" && c.dynamic_pressure > 0.0);
                 first.into_iter().for_each(|c| c.error = c.error.max(moved));
                 if moved > plan.accuracy {
-                    at.warnings.push(format!(
+                    let what = format!(
                         "after {rounds} equilibria the first crossing is still {:.1} % from where the last was sought",
                         100.0 * moved
-                    ));
+                    );
+                    at.warn((what, remedy::EQUILIBRIA));
                 }
                 break at;
             }
@@ -70,8 +71,8 @@ pub(super) fn trimmed(
     if cycles {
         let Some(about) = boundary(scales.ratio(x), true, monitor)? else { return Ok(None) };
         at.cpu_seconds += about.cpu_seconds;
+        at.warn_of(&about);
         (at.cycles, at.borne) = (about.cycles, about.borne);
-        at.warnings.extend(about.warnings.into_iter().filter(|w| !at.warnings.contains(w)).collect::<Vec<_>>());
     }
     Ok(Some(at))
 }

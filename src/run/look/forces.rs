@@ -8,7 +8,7 @@
 //! is the angle about the pivot, so that Q is the moment coefficient. That of a flexible mode is its own: ∂x/∂q = R φ(X). Bodies
 //! with a motion of their own do not take part.
 use num_complex::Complex64;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use super::axes::{GasView, LoadFrame, load_axes};
 use crate::case::{AnyMode, Case, Mode};
@@ -20,7 +20,7 @@ use crate::observe::loads::{Load, LoadAxes};
 use crate::scheme::{Fluid, View, Work};
 
 /// Generalised force on one mode over a period.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct GeneralisedForce {
     /// Name of the mode.
     pub mode: String,

@@ -8,15 +8,12 @@ use super::held::Held;
 use super::rim::Rim;
 use crate::cloud::Cloud;
 use crate::math::Vector;
-use crate::math::tetrahedra::tetrahedralise_within;
+use crate::math::tetrahedra::{MOST, tetrahedralise_within};
 use crate::math::triangulation::triangulate_within;
 use crate::observe::vtk::{Cells, Facets};
 
 /// Two panels meet when their ends are nearer to one another than this part of their mean length.
 const MEETING: f64 = 0.5;
-
-/// Most particles between which there are tetrahedra.
-const MOST: usize = 1_000_000;
 
 /// What ties particles together.
 #[derive(Clone, Debug, Default)]

@@ -1,19 +1,82 @@
 //! What is measured of a flutter boundary.
-use super::super::flutter::{Boundary, FlutterRow};
+use serde::{Deserialize, Serialize};
+
+use super::super::flutter::Boundary;
 use super::Value;
 use crate::verify::{Claim, Metric};
 
 /// Part by which Mach numbers may differ.
 const SAME: f64 = 1e-9;
 
+/// The numbers of a flutter boundary that claims are about.
+#[derive(Clone, Debug, Default, Serialize, Deserialize)]
+pub(in super::super) struct Numbers {
+    /// Mach numbers.
+    mach: Vec<f64>,
+    /// Where flutter begins, in the order of the boundary.
+    onsets: Vec<Onset>,
+    /// Limit cycles.
+    cycles: Vec<Cycle>,
+    /// Particles of the first Mach number.
+    pub(in super::super) particles: usize,
+}
+
+/// A flutter point.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+struct Onset {
+    mach: f64,
+    speed: f64,
+    speed_index: Option<f64>,
+    frequency: f64,
+    frequency_ratio: Option<f64>,
+    error: f64,
+}
+
+/// A limit cycle.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+struct Cycle {
+    amplitude: f64,
+    speed_index: Option<f64>,
+    error: f64,
+    /// Amplitude of a march from it over its own, less one.
+    marched: Option<f64>,
+}
+
+impl From<&Boundary> for Numbers {
+    fn from(boundary: &Boundary) -> Self {
+        let mut numbers = Self {
+            mach: boundary.flutter.iter().map(|at| at.mach).collect(),
+            particles: boundary.flutter.first().map_or(0, |at| at.particles),
+            ..Self::default()
+        };
+        for at in &boundary.flutter {
+            numbers.onsets.extend(at.crossings.iter().filter(|c| c.kind == "flutter").map(|c| Onset {
+                mach: at.mach,
+                speed: c.speed,
+                speed_index: c.speed_index,
+                frequency: c.frequency,
+                frequency_ratio: c.frequency_ratio,
+                error: c.error,
+            }));
+        }
+        numbers.cycles.extend(boundary.lco.iter().map(|c| Cycle {
+            amplitude: c.amplitude,
+            speed_index: c.speed_index,
+            error: c.error,
+            marched: c.march.as_ref().map(|m| m.difference),
+        }));
+        numbers
+    }
+}
+
 /// The metric of `claim` of a boundary, and of another one where the claim compares them.
-pub(in super::super) fn value(boundary: &Boundary, other: Option<&Boundary>, claim: &Claim) -> Value {
+pub(in super::super) fn value(boundary: &Numbers, other: Option<&Numbers>, claim: &Claim) -> Value {
     if claim.metric == Metric::LimitCycleMarch {
-        let march = boundary.lco.iter().find_map(|c| c.march.as_ref()).ok_or("no limit cycle was marched")?;
-        return Ok(march.difference.abs());
+        let difference = boundary.cycles.iter().find_map(|c| c.marched).ok_or("no limit cycle was marched")?;
+        return Ok(difference.abs());
     }
     if matches!(claim.metric, Metric::LimitCycleIndex | Metric::LimitCycleError) {
-        let largest = boundary.lco.iter().max_by(|a, b| a.amplitude.total_cmp(&b.amplitude));
+        let largest = boundary.cycles.iter().max_by(|a, b| a.amplitude.total_cmp(&b.amplitude));
         let cycle = largest.ok_or("there are no limit cycles")?;
         return match claim.metric {
             Metric::LimitCycleError => Ok(cycle.error),
@@ -35,8 +98,8 @@ pub(in super::super) fn value(boundary: &Boundary, other: Option<&Boundary>, cla
 }
 
 /// The first flutter at the Mach number of the claim.
-fn flutter<'a>(boundary: &'a Boundary, claim: &Claim) -> Result<&'a FlutterRow, String> {
-    let chosen = |mach: f64| claim.mach.is_none_or(|m| (m - mach).abs() <= SAME);
-    let at = boundary.flutter.iter().find(|at| chosen(at.mach)).ok_or("the boundary has no such Mach number")?;
-    at.crossings.iter().find(|c| c.kind == "flutter").ok_or_else(|| format!("nothing flutters at Mach {}", at.mach))
+fn flutter<'a>(boundary: &'a Numbers, claim: &Claim) -> Result<&'a Onset, String> {
+    let chosen = |mach: &&f64| claim.mach.is_none_or(|m| (m - **mach).abs() <= SAME);
+    let mach = boundary.mach.iter().find(chosen).ok_or("the boundary has no such Mach number")?;
+    boundary.onsets.iter().find(|c| c.mach == *mach).ok_or_else(|| format!("nothing flutters at Mach {mach}"))
 }

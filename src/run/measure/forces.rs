@@ -3,6 +3,7 @@ use std::fs;
 use std::path::Path;
 
 use num_complex::Complex64;
+use serde::{Deserialize, Serialize};
 
 use super::super::gaf::{Column, Matrices};
 use super::{Value, at_no_thickness, designed_thickness};
@@ -12,9 +13,26 @@ use crate::verify::{Claim, Metric, Table};
 /// Part by which reduced frequencies may differ.
 const SAME: f64 = 1e-9;
 
+/// Lift and moment per motion in a mode at a reduced frequency: real and imaginary parts.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub(in super::super) struct Force {
+    k: f64,
+    mode: String,
+    cl: [f64; 2],
+    cm: [f64; 2],
+}
+
+impl Force {
+    /// All forces of the matrices, frequency by frequency.
+    pub(in super::super) fn all(matrices: &Matrices) -> Vec<Self> {
+        let force = |c: &Column| Self { k: c.k, mode: c.mode.clone(), cl: c.cl, cm: c.cm };
+        matrices.columns.iter().map(force).collect()
+    }
+}
+
 /// The metric of `claim` of the forces on a section, extrapolated to none of its thickness where there are several; `folder` has the table,
 /// with the columns `mode`, `k`, `coefficient` (`cl` or `cm`), `re` and `im`.
-pub(in super::super) fn value(sections: &[(&Case, &Matrices)], claim: &Claim, folder: &Path) -> Value {
+pub(in super::super) fn value(sections: &[(&Case, &[Force])], claim: &Claim, folder: &Path) -> Value {
     let name = claim.file.as_deref().ok_or("the claim names no `file` of forces")?;
     let wrong = |e: &dyn std::fmt::Display| format!("`{name}`: {e}");
     let text = fs::read_to_string(folder.join(name)).map_err(|e| wrong(&e))?;
@@ -33,8 +51,8 @@ pub(in super::super) fn value(sections: &[(&Case, &Matrices)], claim: &Claim, fo
     let mut worst: f64 = 0.0;
     for row in 0..table.len() {
         let mut found = Complex64::ZERO;
-        for ((_, matrices), weight) in sections.iter().zip(&weights) {
-            let column = matrices.columns.iter().find(|c| c.mode == modes[row] && (c.k - k[row]).abs() <= SAME);
+        for ((_, forces), weight) in sections.iter().zip(&weights) {
+            let column = forces.iter().find(|c| c.mode == modes[row] && (c.k - k[row]).abs() <= SAME);
             let column = column.ok_or_else(|| format!("there are no forces of {} at k = {}", modes[row], k[row]))?;
             found += weight * coefficient(column, &coefficients[row])?;
         }
@@ -48,7 +66,7 @@ pub(in super::super) fn value(sections: &[(&Case, &Matrices)], claim: &Claim, fo
     if table.is_empty() { Err(wrong(&"no forces")) } else { Ok(worst) }
 }
 
-fn coefficient(column: &Column, name: &str) -> Result<Complex64, String> {
+fn coefficient(column: &Force, name: &str) -> Result<Complex64, String> {
     let [re, im] = match name {
         "cl" => column.cl,
         "cm" => column.cm,

@@ -2,6 +2,8 @@
 mod axis;
 pub(super) mod boundary;
 pub(super) mod forces;
+mod kept;
+mod numbers;
 mod section;
 pub(super) mod solid;
 mod structure;
@@ -9,9 +11,9 @@ mod structure;
 use std::path::Path;
 
 use super::look::Snapshot;
-use super::record::summary::Summary;
-use super::record::trace::{FirstHarmonics, LastPeriod};
+use super::record::trace::LastPeriod;
 use num_complex::Complex64;
+pub(super) use numbers::Numbers;
 
 use crate::case::{Case, Shape};
 use crate::exact::blasius::{layer, skin_friction};
@@ -33,9 +35,9 @@ const LAYER: f64 = 7.0;
 pub(super) struct Measured {
     /// The case as it ran.
     pub(super) case: Case,
-    /// Its last line.
-    pub(super) summary: Summary,
-    /// Its solution.
+    /// Its numbers.
+    pub(super) numbers: Numbers,
+    /// The columns of its solution that claims are about.
     pub(super) field: Snapshot,
     /// Its wall, empty without bodies.
     pub(super) wall: Wall,
@@ -67,7 +69,7 @@ pub(super) type Value = Result<f64, String>;
 impl Measured {
     /// The metric of `claim`, that needs one run only (and `others` where the claim names other cases).
     pub(super) fn value(&self, claim: &Claim, folder: &Path, others: &[&Self]) -> Value {
-        let (s, other) = (&self.summary, others.first().copied());
+        let (s, other) = (&self.numbers, others.first().copied());
         match claim.metric {
             Metric::Cl | Metric::ExtrapolatedCl => Ok(s.loads.cl),
             Metric::Cd | Metric::ExtrapolatedCd => Ok(s.loads.cd),
@@ -75,8 +77,7 @@ impl Measured {
             Metric::CdPressure => s.loads_pressure.map(|c| c.cd).ok_or_else(no_viscosity),
             Metric::CdFriction => s.loads_friction.map(|c| c.cd).ok_or_else(no_viscosity),
             Metric::SeparationUpper => {
-                let first = s.separation.iter().find(|p| p.upper).map(|p| p.x_c);
-                first.ok_or_else(|| "friction turns nowhere on the upper side".into())
+                s.separation_upper.ok_or_else(|| "friction turns nowhere on the upper side".into())
             }
             Metric::CfBlasiusRms => {
                 metrics::root_mean_square(&self.blasius_differences(claim)?, None).ok_or_else(no_wall)
@@ -134,10 +135,10 @@ impl Measured {
             Metric::ForceAmplitudeError | Metric::ForcePhaseError => {
                 Err("this is measured of `[gaf]`, not of a run".into())
             }
-            Metric::Converged => Ok(f64::from(u8::from(s.succeeded()))),
+            Metric::Converged => Ok(f64::from(u8::from(s.succeeded))),
             Metric::Particles => Ok(s.particles as f64),
-            Metric::MassDrift => s.ledger.map(|l| l.mass.abs()).ok_or_else(no_ledger),
-            Metric::EnergyDrift => s.ledger.map(|l| l.energy.abs()).ok_or_else(no_ledger),
+            Metric::MassDrift => s.drift.map(|[mass, _]| mass.abs()).ok_or_else(no_ledger),
+            Metric::EnergyDrift => s.drift.map(|[_, energy]| energy.abs()).ok_or_else(no_ledger),
             Metric::ErrorL2Density | Metric::Order => {
                 s.error_l2_density.ok_or_else(|| "the case starts from no exact solution".into())
             }
@@ -176,26 +177,25 @@ impl Measured {
 
     /// First harmonic of the lift over that of the motion.
     fn lift(&self) -> Result<Complex64, String> {
-        self.first_harmonic(|h| h.cl)
+        self.first_harmonic(0)
     }
 
     /// First harmonic of the drag over that of the motion.
     fn drag(&self) -> Result<Complex64, String> {
-        self.first_harmonic(|h| h.cd)
+        self.first_harmonic(1)
     }
 
     /// First harmonic of the moment over that of the motion.
     fn moment(&self) -> Result<Complex64, String> {
-        self.first_harmonic(|h| h.cm)
+        self.first_harmonic(2)
     }
 
-    fn first_harmonic(&self, load: impl Fn(&FirstHarmonics) -> [f64; 2]) -> Result<Complex64, String> {
-        let first = self.summary.first_harmonics.first();
-        let [re, im] = first.map(load).ok_or("no motion repeats in this case")?;
+    /// That of load number `k` of lift, drag and moment.
+    fn first_harmonic(&self, k: usize) -> Result<Complex64, String> {
+        let [re, im] = self.numbers.first_harmonics.ok_or("no motion repeats in this case")?[k];
         Ok(Complex64::new(re, im))
     }
 
-    /// Difference of the means of the lift over the first harmonic of the other.
     /// Difference of one load over the last period to a file or another case.
     fn loop_difference(
         &self,
@@ -221,17 +221,17 @@ impl Measured {
 
     /// Last whole cycles of the lift.
     fn cycles(&self) -> Result<Cycles, String> {
-        self.summary.lift_cycles.ok_or_else(|| "the lift does not swing through two whole cycles".into())
+        self.numbers.lift_cycles.ok_or_else(|| "the lift does not swing through two whole cycles".into())
     }
 
     /// Loads over the last period of the motion.
     fn last_period(&self) -> Result<LastPeriod, String> {
-        self.summary.last_period.ok_or_else(|| "the march holds no whole period of a motion".into())
+        self.numbers.last_period.ok_or_else(|| "the march holds no whole period of a motion".into())
     }
 
     /// Length of the Reynolds number, and of frequencies.
     fn chord(&self) -> f64 {
-        self.summary.chord
+        self.numbers.chord
     }
 
     /// A load on a section of no thickness, by the polynomial through this one and the others.
@@ -248,7 +248,7 @@ impl Measured {
     /// First harmonic of the force on the first flexible mode of `[gaf]` over that of the mode that moves.
     fn force(&self) -> Result<Complex64, String> {
         let name = self.case.gaf.as_ref().and_then(|g| g.flexible.first()).map(|m| m.name.clone());
-        let force = self.summary.generalised_forces.iter().find(|f| Some(&f.mode) == name.as_ref());
+        let force = self.numbers.generalised_forces.iter().find(|f| Some(&f.mode) == name.as_ref());
         let force =
             force.ok_or("the run has no force on a flexible mode: add `[[gaf.mode]]` and `[time] harmonics`")?;
         let moving = self.case.motion_of(0).and_then(|law| law.modes.first());
@@ -413,7 +413,7 @@ impl Measured {
         let Some(FieldTruth::Riemann { axis, .. }) = truth else {
             return Err("the case starts from no Riemann problem".into());
         };
-        let exact = truth.and_then(|t| t.shock(units.solver_time(self.summary.time)));
+        let exact = truth.and_then(|t| t.shock(units.solver_time(self.numbers.time)));
         let (place, levels) = exact.ok_or("the exact solution has no shock")?;
         let pressure = self.column("pressure")?;
         let fluid = self.fluid()?;

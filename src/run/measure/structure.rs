@@ -37,7 +37,7 @@ impl Measured {
     }
 
     fn first_structure(&self) -> Result<&StructureSummary, String> {
-        self.summary.structure.first().ok_or_else(|| "no body of the case is on springs".into())
+        self.numbers.structure.first().ok_or_else(|| "no body of the case is on springs".into())
     }
 
     /// The coordinate that a claim names, or the only one.
@@ -82,7 +82,7 @@ impl Measured {
         let data = self.case.structures.first().ok_or("no body of the case is on springs")?;
         let numbers = |s: &Structure| Some((s.mass_ratio?, s.r_alpha2?, s.reduced_speed?));
         let (mu, r2, speed) = numbers(data).ok_or("the section needs `mass_ratio`, `r_alpha2` and `reduced_speed`")?;
-        let slope = fixed.summary.loads.cm / fixed.case.flow.alpha.0;
+        let slope = fixed.numbers.loads.cm / fixed.case.flow.alpha.0;
         Ok(speed * speed * 2.0 * slope / (PI * mu * r2))
     }
 

@@ -3,7 +3,7 @@ mod measured;
 
 use std::path::Path;
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
 
 use crate::observe::cycles::Cycles;
@@ -61,7 +61,7 @@ pub struct Change {
 }
 
 /// Loads over the last period of the motion.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct LastPeriod {
     /// Mean of the lift.
     pub mean_cl: f64,

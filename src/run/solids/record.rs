@@ -1,5 +1,5 @@
 //! What is known of a structure alone on its way and at its end: plain data.
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use super::super::look::Snapshot;
 use crate::solid::forces::Energy;
@@ -116,22 +116,22 @@ pub struct SolidLedger {
 }
 
 /// A probe.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct ProbeRow {
     /// Its name.
     pub name: String,
     /// Its displacement; that at the start of the period where the motion is periodic.
     pub displacement: Vec<f64>,
     /// Its mean displacement where the motion is periodic.
-    #[serde(skip_serializing_if = "Vec::is_empty")]
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub mean: Vec<f64>,
     /// Its harmonics where the motion is periodic.
-    #[serde(skip_serializing_if = "Vec::is_empty")]
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub harmonics: Vec<ProbeHarmonic>,
 }
 
 /// Harmonic k of the displacement of a probe: amplitude · cos(kωt + phase) along each axis.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct ProbeHarmonic {
     /// k.
     pub harmonic: usize,
@@ -159,7 +159,7 @@ pub struct PeriodicRow {
 }
 
 /// A natural mode.
-#[derive(Clone, Copy, Debug, Serialize)]
+#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 pub struct ModeRow {
     /// Frequency, Hz.
     pub frequency: f64,

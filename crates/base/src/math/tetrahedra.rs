@@ -17,6 +17,9 @@ const FLAT: f64 = 1e-4;
 /// Cosine of the angle between the normal at a point of a surface and the way to a corner beyond which that is behind the surface.
 const BEHIND: f64 = -0.5;
 
+/// Most points between which there are tetrahedra to look at: beyond, they take more memory than the solver.
+pub const MOST: usize = 1_000_000;
+
 /// Tetrahedra between `points`, which are `spacing` apart; the last corner is on the left of the first three, so that volumes are
 /// positive. None where there are fewer than four points or a coordinate is not a number.
 pub fn tetrahedralise(points: &[Vector<3>], spacing: &[f64]) -> Vec<[u32; 4]> {

@@ -5,7 +5,7 @@
 //! period of the largest peak of its spectrum, and a crossing counts only after it has been below its mean by a part of its
 //! deviation. The first half of the history, in which the cycle builds up, is left out, and
 //! the last whole cycles give frequency, means and amplitudes. Their spread tells how regular the cycle is.
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 /// Cycles that are looked at, at most.
 const MOST: usize = 6;
@@ -21,7 +21,7 @@ const BINS: usize = 1024;
 const STILL: f64 = 1e-6;
 
 /// The last whole cycles of the lift.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Cycles {
     /// Cycles in a unit of time.
     pub frequency: f64,

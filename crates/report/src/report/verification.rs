@@ -58,6 +58,11 @@ mod tests {
         let row = |case: &str, metric: &str, pass: bool| ClaimRow {
             case: case.into(),
             metric: metric.into(),
+            name: "cl",
+            label: None,
+            kind: "relative",
+            runs: 1,
+            scatter: 0.0,
             value: 0.352,
             reference: 0.349,
             error: 0.0086,

@@ -5,11 +5,8 @@
 //! alone, the solver does not know them; they stay the same as the body deforms.
 use super::body::{Cells, Solid};
 use crate::math::Vector;
-use crate::math::tetrahedra::tetrahedralise_within;
+use crate::math::tetrahedra::{MOST, tetrahedralise_within};
 use crate::math::triangulation::triangulate_within;
-
-/// Most particles of a body in space between which there are tetrahedra: beyond, they take more memory than the solver.
-const MOST: usize = 1_000_000;
 
 impl<const D: usize> Solid<D> {
     /// The cells between its particles, found when they are asked for the first time.

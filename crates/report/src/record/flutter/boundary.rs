@@ -18,6 +18,9 @@ const CONVENTIONS: &str = "match none: speeds at constant density and Mach numbe
                            nose up positive; shapes: the largest amplitude is 1 with phase 0, angles in radians, displacements of rigid \
                            bodies in b, modes in what their files have";
 
+/// What makes a result doubtful, and what helps, one of [`remedy`](super::remedy).
+pub type Warning = (String, &'static str);
+
 /// The whole boundary.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
 #[serde(default)]
@@ -151,6 +154,9 @@ pub struct FlutterAt {
     pub cpu_seconds: f64,
     /// What makes results doubtful.
     pub warnings: Vec<String>,
+    /// What helps against each of the warnings, in their order.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub remedies: Vec<String>,
     /// What is to be known of them.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub notes: Vec<String>,
@@ -164,49 +170,42 @@ impl FlutterAt {
     }
 
     /// Adds limit cycles, and what makes them doubtful.
-    pub fn add_cycles(&mut self, (cycles, doubts): (Vec<LimitCycle>, Vec<String>)) {
+    pub fn add_cycles(&mut self, (cycles, doubts): (Vec<LimitCycle>, Vec<Warning>)) {
         self.cycles = cycles;
-        self.warnings.extend(doubts);
+        doubts.into_iter().for_each(|doubt| self.warn(doubt));
     }
 
-    /// What helps against a warning, or where more is told of it.
-    pub fn remedy(&self, warning: &str) -> &'static str {
-        /// What warnings say, and what helps.
-        const REMEDIES: [(&str, &str); 10] = [
-            ("did not converge", "raise `iterations`, or lower `orders`, in `[time.steady]`"),
-            ("lowest", "give higher `reduced_frequencies` in `[flutter]`: they reach lower speeds"),
-            ("however thin a gas", "give the structure its damping, `damping_ratio`"),
-            (
-                "finer `spacing`",
-                "lower `spacing` in `[cloud]`: the range of speed is that of `doubts` in `flutter.json`",
-            ),
-            ("allow more `frequencies`", "raise `frequencies` in `[flutter]`"),
-            ("allow more `harmonics`", "raise `harmonics` in `[lco]`"),
-            ("`reduced_frequencies`", "give higher `reduced_frequencies` in `[flutter]`"),
-            ("equilibria", "give the structure a speed nearer to the crossing, from which the equilibria are sought"),
-            (
-                "the march from the limit cycle",
-                "leave `march` out of `[lco]`, or compute that march with a case of its own",
-            ),
-            ("limit cycle", "see the branches in `lco.csv`; other amplitudes are given in `[lco]`"),
-        ];
-        let known = REMEDIES.iter().find(|(words, _)| warning.contains(words));
-        known.map_or("see `warnings` and the crossings in `flutter.json`", |(_, remedy)| *remedy)
+    /// Adds a warning and what helps against it.
+    pub fn warn(&mut self, (what, remedy): Warning) {
+        self.warnings.push(what);
+        self.remedies.push(remedy.to_owned());
+    }
+
+    /// Adds the warnings of another boundary of the same case that are not among these.
+    pub fn warn_of(&mut self, other: &Self) {
+        for (what, remedy) in other.warnings.iter().zip(&other.remedies) {
+            if !self.warnings.contains(what) {
+                self.warnings.push(what.clone());
+                self.remedies.push(remedy.clone());
+            }
+        }
     }
 }
 
 #[cfg(test)]
 mod tests {
+    use super::super::remedy;
     use super::*;
 
     #[test]
-    fn warnings_have_remedies_of_their_own() {
-        let at = FlutterAt::default();
-        let doubt = "mode 1 grows between 0.9 and 1.1 of the speed of the case by less (g up to +0.01) than the damping is known: +0.02 on a \
-                     cloud with twice the spacing; a finer `spacing` decides whether it flutters there";
-        assert!(at.remedy(doubt).contains("lower `spacing` in `[cloud]`"));
-        let crossing = "the crossing at 0.9 of the speed is known to 2.0 % only: allow more `frequencies`";
-        assert!(at.remedy(crossing).contains("`frequencies` in `[flutter]`"));
-        assert!(at.remedy("something else").contains("`warnings`"));
+    fn warnings_keep_their_remedies() {
+        let mut at = FlutterAt::default();
+        at.warn(("a doubt".into(), remedy::FREQUENCIES));
+        let mut other = FlutterAt::default();
+        other.warn(("a doubt".into(), remedy::SPACING));
+        other.warn(("another".into(), remedy::STEADY));
+        at.warn_of(&other);
+        assert_eq!(at.warnings, ["a doubt", "another"]);
+        assert_eq!(at.remedies, [remedy::FREQUENCIES, remedy::STEADY]);
     }
 }

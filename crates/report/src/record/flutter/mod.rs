@@ -5,11 +5,12 @@ mod boundary;
 mod crossing;
 pub mod cycle;
 mod numbers;
+pub mod remedy;
 mod shape;
 mod state_space;
 mod wall_motion;
 
-pub use boundary::{Boundary, CaseReference, FlutterAt, Trim};
+pub use boundary::{Boundary, CaseReference, FlutterAt, Trim, Warning};
 pub use crossing::{Bars, Clearance, Doubt, FlutterRow, MotionRow};
 pub use cycle::{LimitCycle, MarchedCycle};
 pub use shape::{Mark, NaturalMode, Share};
