@@ -9,8 +9,8 @@ const MOST: usize = 1 << 30;
 /// Spacing, domain and refinement of a cloud; lengths are in the unit of the geometry.
 ///
 /// ```
-/// # use alula::cloud::{Cloud, CloudSpec};
-/// # use alula::math::{Bounds, Vector};
+/// # use alula_cloud::cloud::{Cloud, CloudSpec};
+/// # use alula_base::math::{Bounds, Vector};
 /// let unit = Bounds { min: Vector([0.0, 0.0]), max: Vector([1.0, 1.0]) };
 /// let spec = CloudSpec { domain: Some(unit), jitter: 0.3, ..CloudSpec::new(0.125) };
 /// let cloud = Cloud::build(&spec, None, &[]).unwrap();
