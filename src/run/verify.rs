@@ -447,7 +447,7 @@ mod tests {
         let write = |name: &str, text: &str| fs::write(root.path().join("a").join(name), text).unwrap();
         write(
             "case.toml",
-            "[flow]\nmach = 2\n[[body]]\nfile = \"diamond.dat\"\n[cloud]\nspacing = 0.125\nfar_field = 2\n[time.steady]\norders = 2\n",
+            "[flow]\nmach = 2\n[[body]]\nairfoil = \"diamond.dat\"\n[cloud]\nspacing = 0.125\nfar_field = 2\n[time.steady]\norders = 2\n",
         );
         write("diamond.dat", &diamond(0.1));
         let folder = tempfile::tempdir().unwrap();
