@@ -1,6 +1,6 @@
 //! The walk through `verification/`: every folder is a case with claims; each case runs, each claim is judged.
 //!
-//! Claims share runs, also with those of other cases that they compare with: [`store`] has them, in memory or in a folder where a later
+//! Claims share runs, also with those of other cases that they compare with: the store has them, in memory or in a folder where a later
 //! walk finds them. A case that does not run fails its claims, with the reason in the place of the source, and the walk goes on.
 mod folder;
 mod store;
