@@ -23,7 +23,7 @@ use crate::case::{Case, Temporal};
 use crate::geometry::dimension;
 use crate::problem::RunError;
 use crate::problem::solids::{build, supported};
-use crate::solid::modes::{Mode, ModeRequest, modes};
+use crate::solid::modes::{Mode, Wanted, modes};
 
 pub(super) use inspect::inspect_in_gas;
 pub use inspect::{SolidReport, inspect_structure};
@@ -85,7 +85,7 @@ fn study<const D: usize>(job: &Job<'_>, monitor: &mut dyn Monitor) -> Result<End
     let found = match &case.time {
         Temporal::Modes(plan) => {
             let above = plan.shift.map_or(0.0, |f| f.0);
-            let wanted = ModeRequest { count: plan.number as usize, above };
+            let wanted = Wanted { count: plan.number as usize, above };
             modes(&built.structure, &marched.state, &wanted)
                 .map_err(|e| RunError::Solid { what: e.to_string(), hint: "see the guide `structures`".into() })?
         }

@@ -37,8 +37,7 @@ const AROUND: f64 = 2.0;
 const ON_PLANE: f64 = 1e-6;
 /// Number of Lloyd iterations.
 const LLOYD_ROUNDS: usize = 8;
-/// Samples whose normals have a cosine below this value belong to different particles, because they lie on opposite
-/// sides of a thin body.
+/// Samples whose normals differ more (cosine) belong to different particles.
 const SAME_SIDE: f64 = -0.2;
 
 /// Interface particles of all bodies. Lengths are in the unit of the geometry.
@@ -266,7 +265,7 @@ impl<const D: usize> Walk<'_, D> {
 struct Sample<const D: usize> {
     x: Vector<D>,
     normal: Vector<D>,
-    /// Fraction of the area of its element.
+    /// Part of its element.
     share: f64,
     spacing: f64,
     element: u32,
@@ -278,7 +277,7 @@ impl<const D: usize> Sample<D> {
     }
 }
 
-/// 3-D: dense samples, greedy selection, Lloyd iterations.
+/// 3-D: dense samples, greedy pick, Lloyd.
 fn scatter<const D: usize>(surface: &Surface<D>, tree: &Tree<D>, planes: &[Plane]) -> Placed<D> {
     let mut samples = surface.pieces(
         |x| SAMPLE_SIZE * tree.leaf_at(x).size,
@@ -322,8 +321,7 @@ fn permute<T: Copy>(all: &mut [T], order: &mut [u32]) {
     }
 }
 
-/// Selects samples that keep `PICK_SPACING` between them, in order of their index, and returns for every sample the
-/// selected one that excludes it.
+/// Samples that keep `PICK_SPACING` between them, first come first served, and for every sample the one that is in its way.
 fn pick<const D: usize>(samples: &[Sample<D>]) -> (Vec<usize>, Vec<u32>) {
     // one grid for each spacing, so that the bins suit all queries
     let mut grids: BTreeMap<u64, Grid<D>> = BTreeMap::new();
@@ -352,8 +350,8 @@ fn pick<const D: usize>(samples: &[Sample<D>]) -> (Vec<usize>, Vec<u32>) {
     (chosen, owner)
 }
 
-/// Sets `owner` to the selected sample nearest to each sample on the same side of a thin body, searched among the
-/// current owner and the selected samples around it.
+/// Makes `owner` the chosen sample nearest to each sample, on the same side of thin bodies: its owner so far or one of the
+/// others around that.
 fn assign<const D: usize>(samples: &[Sample<D>], chosen: &[usize], owner: &mut [u32]) {
     let around = around(samples, chosen);
     let old = owner.to_vec();
@@ -371,7 +369,7 @@ fn assign<const D: usize>(samples: &[Sample<D>], chosen: &[usize], owner: &mut [
     });
 }
 
-/// For each selected sample, the other selected samples within `AROUND` spacings.
+/// For each chosen sample the others within `AROUND` spacings of it.
 fn around<const D: usize>(samples: &[Sample<D>], chosen: &[usize]) -> Vec<Vec<u32>> {
     let mut grids: BTreeMap<u64, Grid<D>> = BTreeMap::new();
     for k in chosen {
@@ -397,7 +395,7 @@ fn around<const D: usize>(samples: &[Sample<D>], chosen: &[usize]) -> Vec<Vec<u3
     around
 }
 
-/// Replaces each selected sample by the sample nearest to the centroid of the samples that it owns.
+/// Moves each chosen sample to the one nearest to the centre of its set.
 fn recentre<const D: usize>(surface: &Surface<D>, samples: &[Sample<D>], owner: &[u32], chosen: &mut [usize]) {
     let mut centre = vec![(Vector::<D>::ZERO, 0.0); chosen.len()];
     for (s, o) in samples.iter().zip(owner) {

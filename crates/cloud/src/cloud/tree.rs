@@ -1,7 +1,7 @@
 //! The background: a forest of square (cubic) root cells, each the root of a quadtree (octree).
 //!
-//! Cells are addressed by integers in units of the finest possible cell, so that neighbours are found by arithmetic
-//! alone. The forest is balanced: cells that touch, corners included, differ by at most one level.
+//! Cells are addressed by integers in units of the finest possible cell, so that neighbours are found by arithmetic alone.
+//! The forest is balanced: cells that touch, corners included, differ by one level at most.
 use crate::math::sweep::sweep;
 use crate::math::{Bounds, Vector};
 

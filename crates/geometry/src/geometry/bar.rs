@@ -49,7 +49,7 @@ impl<const D: usize> Bar<D> {
         BELOW * (0..D).map(|k| (at[k].abs() - self.half[k]).max(0.0)).map(|beyond| beyond * beyond).sum::<f64>()
     }
 
-    /// A segment (`middle` ± `half`) in the axes of the box, and the box in these axes.
+    /// A segment (`middle` ± `half`) in the axes of the bar, and the bar in them.
     pub(super) fn segment(&self, middle: &Vector<D>, half: &Vector<D>) -> (Vector<D>, Vector<D>, Bounds<D>) {
         let bounds = Bounds { min: -self.half, max: self.half };
         (self.local(&(*middle - self.centre)), self.local(half), bounds)

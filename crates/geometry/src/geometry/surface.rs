@@ -4,8 +4,8 @@
 //! queries: the nearest point, whether a segment crosses the surface, whether a point lies inside a body, and the exact
 //! position, normal and curvature at a point.
 //!
-//! A point is inside where the generalised winding number exceeds one half (Jacobson, Kavan, Sorkine-Hornung 2013),
-//! which also holds for surfaces with gaps. Area and volume follow from the area vectors: V = Σ x·A / D.
+//! Inside means that the generalised winding number exceeds one half (Jacobson, Kavan, Sorkine-Hornung 2013), which also
+//! holds for surfaces with gaps. Area and volume follow from the area vectors: V = Σ x·A / D.
 use super::shell::{Edge, Exact, Shell};
 use super::tree::Tree;
 use super::{TOUCHING, simplex};

@@ -5,7 +5,7 @@ use crate::system::{Mechanical, Moment, System};
 
 /// Which modes are computed.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct ModeRequest {
+pub struct Wanted {
     /// Number of modes.
     pub count: usize,
     /// Lower bound of the angular frequency [rad/s]: the modes above it and nearest to it are computed.
@@ -56,7 +56,7 @@ const RIGID: f64 = 1e-6;
 pub fn modes<const D: usize>(
     structure: &Structure<D>,
     u: &[f64],
-    wanted: &ModeRequest,
+    wanted: &Wanted,
 ) -> Result<Vec<Mode>, ModesError> {
     let n = structure.displacements();
     if n > structure.largest_factored() {
