@@ -1,16 +1,17 @@
 //! The flux across an edge as a function of plain values.
 //!
-//! An edge joins the particles i and j at a distance d. It has an area vector s, which both see with opposite signs, and at each
-//! end the weight a with which the other one counts in the gradient there. [`edge_flux`] says what it adds to V dU/dt of both:
-//! with q_L and q_R on both sides of its middle (`reconstruct`), m = s/|s|, the upwind flux F̂ (`physics::riemann`), the flux F
-//! of the gas and w for the velocities of the particles,
+//! An edge connects the particles i and j with the offset d. It has an area vector s, which has opposite signs for
+//! both, and at each end the weight a of the other end in the gradient. [`edge_flux`] returns its contribution to V
+//! dU/dt of both ends. With the states q_L and q_R on both sides of the midpoint (`reconstruct`), m = s/|s|, the upwind
+//! flux F̂ (`physics::riemann`), the physical flux F, and the velocities w of the particles, it is
 //!
-//! - *conservative*: F(q_i)·s − |s| F̂ and |s| F̂ − F(q_j)·s; what is passed by a particle that moves is (w·s) Ū − (w_i·n_i) (Ū − U_i)
-//!   with the mean Ū of both sides of the middle;
-//! - else: −V_i a·[F(q_L) + F(q_R) − 2F(q_i)] − |s| [F̂ − m·(F(q_L) + F(q_R))/2], in axes that move with the particle;
+//! - *conservative*: F(q_i)·s − |s| F̂ and |s| F̂ − F(q_j)·s; the transport relative to moving particles is
+//!   (w·s) Ū − (w_i·n_i) (Ū − U_i) with the mean Ū of both sides of the midpoint;
+//! - otherwise: −V_i a·[F(q_L) + F(q_R) − 2F(q_i)] − |s| [F̂ − m·(F(q_L) + F(q_R))/2], in the frame of the moving
+//!   particle;
 //!
-//! and what stress and heat add along d (`viscous`). The sums over the edges of a particle are its residual, see `residual`.
-//! `edges` computes the same, from the functions below, for many edges at once.
+//! plus the viscous flux along d (`viscous`). The sums over the edges of a particle form its residual, see `residual`.
+//! The module `edges` computes the same for many edges at once, with the functions below.
 use super::reconstruct::{Gradient, Reconstruction, Unlimited, VanAlbada, Venkatakrishnan, low_mach_correction};
 use super::viscous::{direction, middle, slopes};
 use crate::case::{Flux, Limiter};
@@ -20,52 +21,52 @@ use crate::physics::riemann::{AusmPlusUp, Central, Hllc, Hlle, Roe, Rusanov, Upw
 use crate::physics::viscous::Slopes;
 use crate::physics::{Conserved, Gas, Newtonian, Primitive};
 
-/// What the fluxes need to know of the scheme.
+/// Settings of the scheme that determine the fluxes.
 #[derive(Clone, Copy, Debug)]
 pub struct FluxScheme {
-    /// Gas.
+    /// Ideal gas.
     pub gas: Gas,
-    /// Upwind flux.
+    /// Upwind flux function.
     pub flux: Flux,
-    /// Limiter.
+    /// Slope limiter.
     pub limit: Limiter,
-    /// Order, κ, threshold.
+    /// Order, κ and threshold of the reconstruction.
     pub reconstruction: Reconstruction,
-    /// Exactly conservative coefficients.
+    /// True for exactly conservative coefficients.
     pub conservative: bool,
-    /// Those also for what a moving particle passes.
+    /// True when these coefficients are also used for the transport relative to moving particles.
     pub by_faces: bool,
-    /// Viscosity and heat conduction.
+    /// Viscosity and heat conduction; `None` for an inviscid gas.
     pub medium: Option<Newtonian>,
 }
 
-/// The particle at one end of an edge.
+/// Data of the particle at one end of an edge.
 #[derive(Clone, Copy, Debug)]
 pub struct EdgeEnd<const D: usize, S = f64> {
-    /// Its state.
+    /// State of the particle.
     pub state: Primitive<D, S>,
-    /// The gradient there.
+    /// Gradient at the particle.
     pub gradient: Gradient<D, S>,
-    /// How steep the pressure is there, from 0 to 1.
+    /// Pressure sensor from 0 (smooth) to 1 (strong shock).
     pub steepness: S,
-    /// −V a: its volume times the weight of the other end in that gradient, turned round.
+    /// −V a: negative volume times the weight of the other end in the gradient.
     pub weight: Vector<D, S>,
-    /// Its own velocity w.
+    /// Velocity w of the particle.
     pub velocity: Vector<D, S>,
 }
 
-/// What both ends of an edge share.
+/// Data of an edge that both ends share.
 #[derive(Clone, Copy, Debug)]
 pub struct EdgeFace<const D: usize, S = f64> {
-    /// From the first end to the second, d.
+    /// Offset d from the first end to the second.
     pub along: Vector<D, S>,
     /// Area vector s from the first end to the second.
     pub area: Vector<D, S>,
-    /// Least part of the jump of the normal velocity that counts in slow flow: 1 beside the sides of the domain, else 0.
+    /// Smallest factor on the jump of the normal velocity in slow flow: 1 at the sides of the domain, otherwise 0.
     pub whole: f64,
 }
 
-/// What an edge adds to V dU/dt of its two ends.
+/// Contributions of an edge to V dU/dt of its two ends.
 pub fn edge_flux<const D: usize, S: Scalar>(
     scheme: &FluxScheme,
     ends: [&EdgeEnd<D, S>; 2],
@@ -86,13 +87,13 @@ pub fn edge_flux<const D: usize, S: Scalar>(
     [i.plus(S::constant(1.0), &viscous[0]), j.plus(S::constant(1.0), &viscous[1])]
 }
 
-/// What the scheme lets through an edge beyond the mean flux of its ends: its dissipation, and what is gained by reconstruction.
+/// Flux through an edge in addition to the mean flux of its ends: dissipation and the effect of the reconstruction.
 pub fn beyond_mean<const D: usize>(scheme: &FluxScheme, ends: [&EdgeEnd<D>; 2], face: &EdgeFace<D>) -> Conserved<D> {
     let mean = mean_through(&scheme.gas, &ends.map(|end| end.state), &face.area, &ends.map(|end| end.velocity));
     between(scheme, ends, face).1.times(face.area.norm()).minus(&mean)
 }
 
-/// The mean flux of two ends through an area that moves with their mean velocity.
+/// Mean flux of two ends through an area that moves with their mean velocity.
 pub fn mean_through<const D: usize>(
     gas: &Gas,
     state: &[Primitive<D>; 2],
@@ -102,7 +103,7 @@ pub fn mean_through<const D: usize>(
     upwind(gas, Central, state, area, velocity).times(area.norm())
 }
 
-/// States on both sides of the middle of an edge, and the upwind flux between them per unit of area.
+/// States on both sides of the midpoint of an edge, and the upwind flux between them per unit of area.
 fn between<const D: usize, S: Scalar>(
     scheme: &FluxScheme,
     ends: [&EdgeEnd<D, S>; 2],
@@ -132,20 +133,21 @@ fn between<const D: usize, S: Scalar>(
     (sides, upwind)
 }
 
-/// What the inviscid part follows from once the states on both sides of the middle and the flux between them are known.
+/// Data for the inviscid contribution, once the states on both sides of the midpoint and the flux between them are
+/// known.
 pub(super) struct Passing<const D: usize, S> {
     pub(super) state: [Primitive<D, S>; 2],
     pub(super) weight: [Vector<D, S>; 2],
     pub(super) velocity: [Vector<D, S>; 2],
     pub(super) area: Vector<D, S>,
-    /// States on both sides of the middle.
+    /// States on both sides of the midpoint.
     pub(super) sides: [Primitive<D, S>; 2],
     /// Upwind flux between them per unit of area.
     pub(super) upwind: Conserved<D, S>,
 }
 
-/// The states on both sides of the middle with the jump of the normal velocity scaled with the Mach number, seen from the mean
-/// velocity of the ends.
+/// States on both sides of the midpoint, relative to the mean velocity of the ends, after the low-Mach-number
+/// correction.
 #[inline(always)]
 pub(super) fn slowed<const D: usize, S: Scalar>(
     gas: &Gas,
@@ -158,8 +160,8 @@ pub(super) fn slowed<const D: usize, S: Scalar>(
     [l.seen_from(&-w), r.seen_from(&-w)]
 }
 
-/// The upwind flux through an area that moves with the mean velocity of the ends, by way of the axes in which it rests; per
-/// unit of area.
+/// Upwind flux per unit of area through an area that moves with the mean velocity of the ends, computed in the frame in
+/// which the area is at rest.
 #[inline(always)]
 pub(super) fn upwind<const D: usize, S: Scalar, F: UpwindFlux<D>>(
     gas: &Gas,
@@ -174,7 +176,7 @@ pub(super) fn upwind<const D: usize, S: Scalar, F: UpwindFlux<D>>(
     Conserved { density: f.density, momentum: f.momentum + w * f.density, energy }
 }
 
-/// The upwind flux, on its way to Einfeldt's as `steepness` goes from 0 to 1.
+/// The upwind flux, blended with Einfeldt's flux by the factor `steepness` from 0 to 1.
 #[inline(always)]
 pub(super) fn steep<const D: usize, S: Scalar>(
     gas: &Gas,
@@ -187,7 +189,8 @@ pub(super) fn steep<const D: usize, S: Scalar>(
     plain.plus(steepness, &damped.minus(plain))
 }
 
-/// With coefficients that let one end gain what the other loses; `by_faces`: these serve as well for what moving ends pass.
+/// Contribution with conservative coefficients; `by_faces`: these are also used for the transport relative to moving
+/// ends.
 #[inline(always)]
 pub(super) fn conservative<const D: usize, S: Scalar, const MOVES: bool>(
     gas: &Gas,
@@ -202,13 +205,13 @@ pub(super) fn conservative<const D: usize, S: Scalar, const MOVES: bool>(
     }
     let mean_state = gas.conserved(&edge.sides[0]).plus(one, &gas.conserved(&edge.sides[1])).times(S::constant(0.5));
     let through = through.plus(mean(&edge.velocity).dot(s), &mean_state);
-    // w·∇U: by the weights that are exact for linear fields, which come as −V a, or by those of the fluxes
+    // w·∇U: by the weights that are exact for linear fields, given as −V a, or by the area vectors of the fluxes
     let n = if by_faces { [*s, -*s] } else { [edge.weight[0].times(-2.0), edge.weight[1].times(-2.0)] };
     let swept = |k: usize| mean_state.minus(&gas.conserved(&edge.state[k])).times(edge.velocity[k].dot(&n[k]));
     [out_i.minus(&through).plus(one, &swept(0)), through.minus(&out_j).plus(one, &swept(1))]
 }
 
-/// With the weights that are exact for linear fields, each end with its own velocity.
+/// Contribution with the weights that are exact for linear fields, each end with its own velocity.
 #[inline(always)]
 pub(super) fn consistent<const D: usize, S: Scalar, const MOVES: bool>(
     gas: &Gas,
@@ -225,7 +228,7 @@ pub(super) fn consistent<const D: usize, S: Scalar, const MOVES: bool>(
     [central(0).minus(&spread), central(1).plus(S::constant(1.0), &spread)]
 }
 
-/// The fluxes of both sides of the middle through an area `n` that moves with `w`, added.
+/// Sum of the fluxes of both sides of the midpoint through an area `n` that moves with `w`.
 #[inline(always)]
 fn both_sides<const D: usize, S: Scalar, const MOVES: bool>(
     gas: &Gas,
@@ -237,7 +240,7 @@ fn both_sides<const D: usize, S: Scalar, const MOVES: bool>(
     through.plus(S::constant(1.0), &relative_flux::<D, S, MOVES>(gas, right, n, w))
 }
 
-/// Flux of the state `q` through an area `n` that moves with `w`.
+/// Flux of the state `q` through an area `n` that moves with the velocity `w`.
 #[inline(always)]
 fn relative_flux<const D: usize, S: Scalar, const MOVES: bool>(
     gas: &Gas,
@@ -248,7 +251,8 @@ fn relative_flux<const D: usize, S: Scalar, const MOVES: bool>(
     if MOVES { gas.flux(q, n).plus(-w.dot(n), &gas.conserved(q)) } else { gas.flux(q, n) }
 }
 
-/// What stress and heat along an edge add to both ends; by the weights −V a of both where there are any, else through the area.
+/// Viscous contribution of an edge to both ends: by the weights −V a where they are given, otherwise through the area
+/// vector.
 #[inline(always)]
 pub(super) fn viscous<const D: usize, S: Scalar>(
     gas: &Gas,
@@ -272,14 +276,14 @@ fn mean<const D: usize, S: Scalar>(velocity: &[Vector<D, S>; 2]) -> Vector<D, S>
     (velocity[0] + velocity[1]).times(0.5)
 }
 
-/// Unit normal and size of an area; a normal of no length where there is none.
+/// Unit normal and magnitude of an area vector; the zero vector where the area is zero.
 #[inline(always)]
 fn normal<const D: usize, S: Scalar>(s: &Vector<D, S>) -> (Vector<D, S>, S) {
     let size = s.norm();
     (*s * size.max(S::constant(f64::MIN_POSITIVE)).inverse(), size)
 }
 
-/// s/2V: what takes the place of a_ij when the coefficients are conservative.
+/// The vector s/2V, which replaces a_ij when the coefficients are conservative.
 #[inline(always)]
 pub(super) fn half_face<const D: usize>(volume: f64, s: &Vector<D>) -> Vector<D> {
     *s * (0.5 / volume)

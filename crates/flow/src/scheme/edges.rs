@@ -1,8 +1,9 @@
-//! The fluxes across the edges of a part, many at a time.
+//! Fluxes across the edges of a part, several edges at a time.
 //!
-//! What the two ends of some edges hold is gathered into arrays, one number of every edge after the other; a loop without
-//! branches then computes all of them with the functions of `edge_flux`, which the compiler turns into vector instructions; what
-//! comes out is added to the rows of the part in the order of the edges. The sums are therefore those of one edge at a time.
+//! The data of the two ends of several edges are gathered into arrays, in which each quantity is stored for all these
+//! edges. A loop without branches computes all of them with the functions of `edge_flux`, which the compiler translates
+//! to vector instructions. The results are added to the rows of the part in the order of the edges, so that the sums
+//! equal those of a loop over single edges.
 use multiversion::multiversion;
 
 use crate::case::{Flux, Limiter};
@@ -17,10 +18,10 @@ use super::lanes::{LANES, Lanes, Number, StateLanes, pair, put, put_all, take, t
 use super::reconstruct::{Factors, Gradient, Limit, Reconstruction, Unlimited, VanAlbada, Venkatakrishnan};
 use super::viscous::slopes;
 
-/// What particles hold.
+/// Data of the particles from which the fluxes are computed.
 #[derive(Clone, Copy)]
 pub struct Particles<'a, const D: usize, S = f64> {
-    /// Places.
+    /// Positions.
     pub x: &'a [Vector<D>],
     /// Volumes.
     pub volume: &'a [f64],
@@ -28,31 +29,32 @@ pub struct Particles<'a, const D: usize, S = f64> {
     pub state: &'a [Primitive<D, S>],
     /// Gradients.
     pub gradient: &'a [Gradient<D, S>],
-    /// How steep the pressure is there, from 0 to 1.
+    /// Pressure sensor from 0 (smooth) to 1 (strong shock), see [`Gradient::steepness`].
     pub steepness: &'a [S],
     /// Velocities of the particles themselves; empty when none moves.
     pub velocity: &'a [Vector<D>],
-    /// The outer ones: waves leave through them, which takes the whole jump of the velocity.
+    /// Range of the outer particles. Waves leave through them, for which the full jump of the normal velocity is
+    /// necessary.
     pub outer: (usize, usize),
 }
 
-/// Some edges with what their ends hold, and what they add to V dU/dt of both.
+/// Several edges with the data of their ends and their contributions to V dU/dt at both ends.
 struct Batch<const D: usize, S: Number> {
     own: [StateLanes<D, S>; 2],
     slope: [StateLanes<D, S>; 2],
-    /// −V a of either end, the area vector s, and the velocities of the ends.
+    /// −V a of each end, the area vector s, and the velocities of the ends.
     weight: [[Lanes; D]; 2],
     area: [Lanes; D],
     speed: [[Lanes; D]; 2],
-    /// Least part of the jump of the normal velocity that counts: 1 beside outer particles.
+    /// Smallest factor on the jump of the normal velocity: 1 at outer particles.
     whole: Lanes,
-    /// The greater steepness of the two ends.
+    /// The greater pressure sensor of the two ends.
     steepness: S::Many,
-    /// States on both sides of the middle, the upwind flux there per unit of area, and the result.
+    /// States on both sides of the midpoint, the upwind flux there per unit of area, and the result.
     middle: [StateLanes<D, S>; 2],
     upwind: StateLanes<D, S>,
     out: [StateLanes<D, S>; 2],
-    /// The edge from one end to the other, and the gradients at both; for stress and heat alone.
+    /// Offset from the first end to the second, and the gradients at both; for viscous fluxes only.
     along: [Lanes; D],
     gradient: [Slope<D, S>; 2],
 }
@@ -103,8 +105,8 @@ impl<const D: usize, S: Number> Batch<D, S> {
     };
 }
 
-/// Calls `add(i, change)` with what every edge adds to V dU/dt of its ends, one edge after the other; `frozen` is what the limiter leaves
-/// of their slopes where that is given.
+/// Calls `add(i, change)` with the contribution of every edge to V dU/dt of its ends, one edge after the other.
+/// `frozen` holds the limiter factors of the edges if they are given instead of computed.
 pub fn edge_fluxes<const D: usize, S: Number>(
     scheme: &FluxScheme,
     particles: Particles<'_, D, S>,
@@ -195,10 +197,10 @@ fn gather<const D: usize, S: Number>(
     }
 }
 
-// The loops below are compiled for vectors of four numbers as well as for the plainest processor: the same operations in both,
-// so the same bits.
+// The loops below are compiled for vector registers of several sizes as well as for the baseline processor, with the
+// same operations and hence the same bits.
 
-/// States on both sides of the middle of every edge.
+/// Reconstructs the states on both sides of the midpoint of every edge.
 #[multiversion(targets("x86_64+avx512f+avx512vl+avx512dq", "x86_64+avx2"))]
 #[allow(unsafe_code, reason = "the attribute calls the version that the processor has just been asked for")]
 fn reconstruct<const D: usize, S: Number, L: Limit>(
@@ -217,7 +219,7 @@ fn reconstruct<const D: usize, S: Number, L: Limit>(
     }
 }
 
-/// The same where it is given what the limiter leaves of the slopes.
+/// Reconstructs these states with given limiter factors.
 #[multiversion(targets("x86_64+avx512f+avx512vl+avx512dq", "x86_64+avx2"))]
 #[allow(unsafe_code, reason = "the attribute calls the version that the processor has just been asked for")]
 fn reconstruct_frozen<const D: usize, S: Number>(
@@ -236,7 +238,7 @@ fn reconstruct_frozen<const D: usize, S: Number>(
     }
 }
 
-/// Scales the jump of the normal velocity with the Mach number.
+/// Applies the low-Mach-number correction to the jump of the normal velocity.
 #[multiversion(targets("x86_64+avx512f+avx512vl+avx512dq", "x86_64+avx2"))]
 #[allow(unsafe_code, reason = "the attribute calls the version that the processor has just been asked for")]
 fn low_mach_corrections<const D: usize, S: Number>(gas: Gas, batch: &mut Batch<D, S>) {
@@ -249,7 +251,7 @@ fn low_mach_corrections<const D: usize, S: Number>(gas: Gas, batch: &mut Batch<D
     }
 }
 
-/// The upwind flux through the area of every edge.
+/// Computes the upwind flux through the area of every edge.
 #[multiversion(targets("x86_64+avx512f+avx512vl+avx512dq", "x86_64+avx2"))]
 #[allow(unsafe_code, reason = "the attribute calls the version that the processor has just been asked for")]
 fn upwind_fluxes<const D: usize, S: Number, F: UpwindFlux<D>>(gas: Gas, flux: F, batch: &mut Batch<D, S>) {
@@ -260,7 +262,7 @@ fn upwind_fluxes<const D: usize, S: Number, F: UpwindFlux<D>>(gas: Gas, flux: F,
     }
 }
 
-/// Brings the upwind flux nearer to Einfeldt's between steep particles.
+/// Blends the upwind flux with Einfeldt's flux where the pressure sensor is active.
 #[multiversion(targets("x86_64+avx512f+avx512vl+avx512dq", "x86_64+avx2"))]
 #[allow(unsafe_code, reason = "the attribute calls the version that the processor has just been asked for")]
 fn steep_fluxes<const D: usize, S: Number>(gas: Gas, batch: &mut Batch<D, S>) {
@@ -272,7 +274,7 @@ fn steep_fluxes<const D: usize, S: Number>(gas: Gas, batch: &mut Batch<D, S>) {
     }
 }
 
-/// What every edge adds to V dU/dt of both ends.
+/// Computes the contribution of every edge to V dU/dt of both ends.
 #[multiversion(targets("x86_64+avx512f+avx512vl+avx512dq", "x86_64+avx2"))]
 #[allow(unsafe_code, reason = "the attribute calls the version that the processor has just been asked for")]
 fn accumulate_residual<const D: usize, S: Number, const MOVES: bool, const CONSERVATIVE: bool>(
@@ -299,7 +301,7 @@ fn accumulate_residual<const D: usize, S: Number, const MOVES: bool, const CONSE
     }
 }
 
-/// What stress and heat along every edge add to V dU/dt of both ends.
+/// Adds the viscous contribution of every edge to V dU/dt of both ends.
 #[multiversion(targets("x86_64+avx512f+avx512vl+avx512dq", "x86_64+avx2"))]
 #[allow(unsafe_code, reason = "the attribute calls the version that the processor has just been asked for")]
 fn viscous_fluxes<const D: usize, S: Number, const CONSERVATIVE: bool>(

@@ -1,29 +1,31 @@
-//! Values at the middle of an edge.
+//! Reconstruction of the states at the midpoint of an edge.
 //!
-//! MUSCL on primitive variables (van Leer 1979, in the edge form of Löhner 2008): with the upwind difference
-//! a = 2∇q_i·d − Δq and the central one b = Δq = q_j − q_i,
-//! q_L = q_i + s/4 [(1 − κs) a + (1 + κs) b]. The limiter s(a, b) is 1 in smooth flow and falls to 0 where a and b disagree;
-//! it is differentiable, so that Newton's method converges through shocks.
+//! MUSCL on primitive variables (van Leer 1979, in the edge form of Löhner 2008): with the upwind difference a =
+//! 2∇q_i·d − Δq and the central difference b = Δq = q_j − q_i, the state is q_L = q_i + s/4 [(1 − κs) a + (1 + κs) b].
+//! The limiter s(a, b) is 1 in smooth flow and decreases to 0 where a and b differ. It is differentiable, so that
+//! Newton's method converges through shocks.
 //!
-//! Nothing is linear in a strong shock or beside a vacuum. There slopes are given up, smoothly: of a *steep* particle, whose
-//! pressure changes by much of itself within its spacing, and of an edge whose ends have very different pressures; what is left
-//! of an increment leaves density and pressure positive. Between steep particles the upwind flux gives way to Einfeldt's: one that
-//! resolves contacts lets disturbances grow along a strong shock that stands between two rows of particles (Quirk 1994, Int. J.
-//! Numer. Methods Fluids 18). Rusanov's would do as well, but takes mass and energy from row to row where a shock is curved: total
-//! pressure behind the bow shock of a circle at Mach 10 was 4 % low. None of it acts in shocks below about Mach 1.4.
+//! In a strong shock or next to a vacuum, slopes are removed smoothly: those of a *steep* particle, whose pressure
+//! changes by a large fraction within its spacing, and those of an edge whose ends have very different pressures. The
+//! remaining increments keep density and pressure positive. Between steep particles, the upwind flux is replaced by
+//! Einfeldt's. A flux that resolves contacts permits disturbances to grow along a strong shock between two rows of
+//! particles (carbuncle; Quirk 1994, Int. J. Numer. Methods Fluids 18). Rusanov's flux would prevent this too, but
+//! transports mass and energy between rows where a shock is curved: the total pressure behind the bow shock of a circle
+//! at Mach 10 was 4 % too low. None of these measures acts in shocks below about Mach 1.4.
 use crate::math::Vector;
 use crate::math::jet::Scalar;
 use crate::physics::{Gas, Primitive};
 
-/// Smallest fraction of a particle's own density or pressure that a reconstructed state may have.
+/// Smallest fraction of the density or pressure of a particle that a reconstructed state may have.
 const POSITIVE: f64 = 0.1;
-/// Squares of the relative change of pressure in one spacing, h |∇p|/p, between which slopes vanish: a shock at Mach 1.4 has .5,
-/// bow shocks have more than 1.
+/// Squared relative change of pressure within one spacing, h |∇p|/p, between which slopes are reduced to zero: a shock
+/// at Mach 1.4 has 0.5, bow shocks have more than 1.
 const STEEP: [f64; 2] = [0.5, 1.5];
-/// Squares of the relative jump of pressure (p_j − p_i)/(p_j + p_i) between which slopes are given up, at ratios of 2 and 4.
+/// Squared relative jump of pressure (p_j − p_i)/(p_j + p_i) between which slopes are reduced to zero, for ratios of 2
+/// and 4.
 const JUMP: [f64; 2] = [1.0 / 9.0, 9.0 / 25.0];
-/// Least square of the threshold: without any, limiters would divide nothing by nothing where nothing varies.
-const LEAST_SQUARE: f64 = 1e-60;
+/// Lower bound of the squared threshold, which avoids 0/0 in the limiters in uniform flow.
+const MIN_SQUARE: f64 = 1e-60;
 
 /// Gradients of density, velocity and pressure.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -38,12 +40,12 @@ pub struct Gradient<const D: usize, S = f64> {
 }
 
 impl<const D: usize> Gradient<D> {
-    /// All zero.
+    /// Zero gradients.
     pub const ZERO: Self = Self { density: Vector::ZERO, velocity: [Vector::ZERO; D], pressure: Vector::ZERO };
 
-    /// The same gradient in turned axes.
+    /// The gradients in rotated axes.
     pub fn turned(&self, turn: &impl Fn(&Vector<D>) -> Vector<D>) -> Self {
-        // rows of R G Rᵀ: turn the derivative of each component, then mix the components
+        // rows of R G Rᵀ: rotate the derivative of each component, then combine the components
         let half: [Vector<D>; D] = std::array::from_fn(|c| turn(&self.velocity[c]));
         let column = |d: usize| turn(&Vector::from_fn(|c| half[c][d]));
         let columns: [Vector<D>; D] = std::array::from_fn(column);
@@ -55,7 +57,7 @@ impl<const D: usize> Gradient<D> {
     }
 }
 
-/// 0 below 0, 1 above 1, in between t² (3 − 2t).
+/// Smooth step: 0 below 0, 1 above 1, t² (3 − 2t) in between.
 #[inline(always)]
 pub(super) fn smooth_step<S: Scalar>(t: S) -> S {
     let t = t.max(S::constant(0.0)).min(S::constant(1.0));
@@ -63,12 +65,12 @@ pub(super) fn smooth_step<S: Scalar>(t: S) -> S {
 }
 
 impl<const D: usize, S: Scalar> Gradient<D, S> {
-    /// All zero.
+    /// Zero gradients.
     pub fn zero() -> Self {
         Self { density: Vector::zero(), velocity: [Vector::zero(); D], pressure: Vector::zero() }
     }
 
-    /// Adds a (q_j − q_i) for one neighbour.
+    /// Adds the contribution a (q_j − q_i) of one neighbour.
     #[inline(always)]
     pub fn add(&mut self, a: &Vector<D>, dq: &Primitive<D, S>) {
         let times = |q: S| Vector::from_fn(|c| q * a[c]);
@@ -79,20 +81,20 @@ impl<const D: usize, S: Scalar> Gradient<D, S> {
         self.pressure += times(dq.pressure);
     }
 
-    /// Gradients of which each is `f` of one here.
+    /// Applies `f` to each gradient.
     #[inline(always)]
     pub fn map(&self, f: impl Fn(&Vector<D, S>) -> Vector<D, S>) -> Self {
         Self { density: f(&self.density), velocity: self.velocity.each_ref().map(&f), pressure: f(&self.pressure) }
     }
 
-    /// How far the pressure `p` is from linear within a spacing `h`: 0 in smooth flow and weak shocks, 1 in strong ones.
+    /// Pressure sensor: 0 where the pressure `p` changes little within the spacing `h`, 1 in strong shocks.
     #[inline(always)]
     pub fn steepness(&self, h: f64, p: S) -> S {
         let change = self.pressure.norm_squared() * (h * h) / (p * p);
         smooth_step((change - STEEP[0]) * (1.0 / (STEEP[1] - STEEP[0])))
     }
 
-    /// Change of the state along `d`.
+    /// Change of the state along the offset `d`.
     #[inline(always)]
     pub fn along(&self, d: &Vector<D, S>) -> Primitive<D, S> {
         Primitive {
@@ -103,14 +105,15 @@ impl<const D: usize, S: Scalar> Gradient<D, S> {
     }
 }
 
-/// Slope limiter of one edge and one variable: `a` upwind, `b` central difference, `eps` the square of a small difference.
+/// Slope limiter for one edge and one variable: `a` are the upwind differences, `b` the central one, `eps` the square
+/// of the threshold.
 pub trait Limit: Copy + Sync {
-    /// Factors in [0, 1] of both ends, which share one division where they can.
+    /// Factors in [0, 1] of both ends; both share one division where possible.
     fn factors<S: Scalar>(self, a: [S; 2], b: S, eps: S) -> [S; 2];
 }
 
-/// Van Albada, van Leer and Roberts (1982) in a form that never reaches zero, s = m/(m + (a − b)²) with
-/// m = ε + (a² + b²)/2: differentiable everywhere, so that residuals fall through shocks.
+/// Limiter of van Albada, van Leer and Roberts (1982) in a form that never reaches zero, s = m/(m + (a − b)²) with m =
+/// ε + (a² + b²)/2. It is differentiable everywhere, so that residuals converge through shocks.
 #[derive(Clone, Copy)]
 pub struct VanAlbada;
 impl Limit for VanAlbada {
@@ -124,8 +127,8 @@ impl Limit for VanAlbada {
     }
 }
 
-/// The rational function of Venkatakrishnan (1995) applied to the two differences of an edge: smooth where these agree, but 3/4
-/// there if they are far above the threshold.
+/// Rational function of Venkatakrishnan (1995) of the two differences of an edge: smooth where they agree, but equal to
+/// 3/4 there when they are far above the threshold.
 #[derive(Clone, Copy)]
 pub struct Venkatakrishnan;
 impl Limit for Venkatakrishnan {
@@ -158,22 +161,23 @@ impl Limit for Unlimited {
 /// Order, κ and threshold of the reconstruction.
 #[derive(Clone, Copy, Debug)]
 pub struct Reconstruction {
-    /// False: the states of the particles themselves (first order).
+    /// True for second order; false: the states of the particles themselves (first order).
     pub second_order: bool,
-    /// κ of the linear combination.
+    /// Parameter κ of the linear combination.
     pub kappa: f64,
-    /// Relative difference below which the limiter does not act.
+    /// Relative difference below which the limiter is inactive.
     pub threshold: f64,
-    /// Jumps of the normal velocity are scaled with the Mach number, see [`low_mach_correction`].
+    /// True for the low-Mach-number correction of the normal velocity, see [`low_mach_correction`].
     pub low_mach: bool,
 }
 
-/// Two states across `n` whose jump of the normal velocity is scaled by min(1, M), M the greater Mach number of the two, but by no
-/// less than `least`.
+/// Low-Mach-number correction of two states at an area of normal `n`: their jump of the normal velocity is multiplied
+/// by min(1, M), where M is the greater Mach number of the two, but by at least `least`.
 ///
-/// An upwind flux damps that jump in proportion to the speed of sound, in slow flow 1/M times as much as convection asks for
-/// (Thornber, Mosedale, Drikakis, Youngs and Williams 2008, J. Comput. Phys. 227; Rieper 2011, J. Comput. Phys. 230). The jump
-/// along the edge's face, which is damped with the speed of the flow, stays as it is.
+/// An upwind flux damps this jump in proportion to the sound speed, which is 1/M times as much as necessary for
+/// convection in slow flow (Thornber, Mosedale, Drikakis, Youngs and Williams 2008, J. Comput. Phys. 227; Rieper 2011,
+/// J. Comput. Phys. 230). The jump tangential to the area, which is damped in proportion to the flow speed, is not
+/// changed.
 #[inline(always)]
 pub fn low_mach_correction<const D: usize, S: Scalar>(
     gas: &Gas,
@@ -188,20 +192,21 @@ pub fn low_mach_correction<const D: usize, S: Scalar>(
     (Primitive { velocity: l.velocity + half, ..l }, Primitive { velocity: r.velocity - half, ..r })
 }
 
-/// The difference beyond either end of an edge over which a variable changes by `dq`.
+/// Upwind differences at both ends of an edge over which a variable changes by `dq`.
 #[inline(always)]
 fn upwind<S: Scalar>(slopes: [S; 2], dq: S) -> [S; 2] {
     [slopes[0] * 2.0 - dq, slopes[1] * 2.0 - dq]
 }
 
-/// Part of the slopes that is kept between particles whose pressures are `p` and `q`: all of it up to a ratio of 2, none from 4 on.
+/// Fraction of the slopes that is retained between the pressures `p` and `q`: one up to a ratio of 2, zero from 4 on.
 #[inline(always)]
 fn slope_kept<S: Scalar>(p: S, q: S) -> S {
     let jump = (q - p) / (q + p);
     S::constant(1.0) - smooth_step((jump * jump - JUMP[0]) * (1.0 / (JUMP[1] - JUMP[0])))
 }
 
-/// Part of the increment ± `change` of the state `own` that leaves a fraction of its density and its pressure.
+/// Fraction of the increment ± `change` of the state `own` that keeps density and pressure above a fraction of their
+/// own values.
 #[inline(always)]
 fn kept<const D: usize, S: Scalar>(own: &Primitive<D, S>, change: &Primitive<D, S>, sign: f64) -> S {
     let fall = (change.density * own.pressure * -sign).max(change.pressure * own.density * -sign);
@@ -209,11 +214,11 @@ fn kept<const D: usize, S: Scalar>(own: &Primitive<D, S>, change: &Primitive<D, 
     most / fall.max(most)
 }
 
-/// What a limiter leaves of the slopes at both ends of an edge, of every variable.
+/// Limiter factors for the slopes at both ends of an edge, for every variable.
 pub type Factors<const D: usize, S = f64> = [Primitive<D, S>; 2];
 
 impl Reconstruction {
-    /// States on both sides of the middle of an edge, from the states of its ends and their slopes along it.
+    /// States on both sides of the midpoint of an edge, from the states of its ends and their slopes along it.
     #[inline(always)]
     pub fn states<const D: usize, S: Scalar, L: Limit>(
         &self,
@@ -228,7 +233,7 @@ impl Reconstruction {
         self.limited(ends, slopes, &self.factors(gas, limit, ends, slopes))
     }
 
-    /// What the limiter leaves of the slopes.
+    /// Limiter factors of the slopes.
     #[inline(always)]
     pub fn factors<const D: usize, S: Scalar, L: Limit>(
         &self,
@@ -239,7 +244,7 @@ impl Reconstruction {
     ) -> Factors<D, S> {
         let dq = qj.minus(qi);
         let (density, pressure) = ((qi.density + qj.density) * 0.5, (qi.pressure + qj.pressure) * 0.5);
-        let square = (self.threshold * self.threshold).max(LEAST_SQUARE);
+        let square = (self.threshold * self.threshold).max(MIN_SQUARE);
         let sound2 = pressure * gas.gamma / density;
         let eps = (density * square * density, sound2 * square, pressure * square * pressure);
         let of = |slopes: [S; 2], dq: S, eps: S| limit.factors(upwind(slopes, dq), dq, eps);
@@ -254,7 +259,7 @@ impl Reconstruction {
         [left, right]
     }
 
-    /// States on both sides of the middle of an edge, of whose slopes the limiter leaves `factors`.
+    /// States on both sides of the midpoint of an edge with given limiter factors.
     #[inline(always)]
     pub fn limited<const D: usize, S: Scalar>(
         &self,
@@ -277,7 +282,7 @@ impl Reconstruction {
         (qi.plus(slope * kept(qi, &left, 1.0), &left), qj.plus(-(slope * kept(qj, &right, -1.0)), &right))
     }
 
-    /// s/4 [(1 − κs) a + (1 + κs) b] of one variable at both ends.
+    /// Increments s/4 [(1 − κs) a + (1 + κs) b] of one variable at both ends.
     #[inline(always)]
     fn increments<S: Scalar>(&self, slopes: [S; 2], dq: S, s: [S; 2]) -> [S; 2] {
         let a = upwind(slopes, dq);

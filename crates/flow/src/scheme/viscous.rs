@@ -1,22 +1,24 @@
-//! Stress and heat between particles and on walls.
+//! Viscous stress and heat conduction between particles and at walls.
 //!
-//! In the middle of the edge d = x_j − x_i, with the mean ḡ of the gradients at both ends and the direction m = s_ij/|s_ij| of
-//! its face, the gradient of velocity and temperature is
+//! At the midpoint of the edge d = x_j − x_i, with the mean ḡ of the gradients at both ends and the direction m =
+//! s_ij/|s_ij| of its face, the gradient of velocity and temperature is
 //!
 //! g = ḡ + m (Δf − ḡ·d)/(m·d),
 //!
-//! the mean, corrected so that the difference between the particles themselves counts across the face. Corrections along
-//! the edge instead of m are wrong on thin layers with neighbours across the diagonals. The viscous flux F_v(g) then goes
-//! through the face: +F_v·s_ij/V_i with conservative coefficients, else 2 a_ij·[F_v − F_v(g_i)], which both are zero in
-//! uniform flow and for uniform stress.
+//! the mean, corrected so that the difference between the particles themselves determines the derivative across the
+//! face. A correction along the edge instead of m is inaccurate on thin layers with diagonal neighbours. The
+//! contribution of the viscous flux F_v(g) is +F_v·s_ij/V_i with conservative coefficients, otherwise 2 a_ij·[F_v −
+//! F_v(g_i)]. Both vanish in uniform flow and for uniform stress.
 //!
-//! *Walls that the gas sticks to.* The velocity of an interface particle is that of the wall, its pressure follows from
-//! ∂p/∂n = −ρ n·a_w and its temperature from ∂θ/∂n = 0 or is given (`wall_state`). The wall takes the stress of the slope
-//! ∂v/∂n = (Δv₁ η₂/η₁ − Δv₂ η₁/η₂)/(η₂ − η₁), a parabola through the wall and two layers at the heights η, or without layers
-//! of the normal part of the gradient of the interface particle. Along the wall the gas turns with it: ∇v = n ∂v/∂n + G (I − nn)
-//! with the rate of rotation G of the wall, so that what turns with the wall feels no stress.
+//! *No-slip walls.* The velocity of an interface particle is that of the wall, its pressure follows from ∂p/∂n = −ρ
+//! n·a_w, and its
+//! temperature from ∂θ/∂n = 0 or is given (`wall_state`). The stress on the wall is that of the slope ∂v/∂n = (Δv₁
+//! η₂/η₁ − Δv₂ η₁/η₂)/(η₂ − η₁), a parabola through the wall and two layers at the heights η; without layers, it is
+//! that of the normal part of the gradient of the interface particle. Along the wall, the gas rotates with it: ∇v = n
+//! ∂v/∂n + G (I − nn) with the rate of rotation G of the wall, so that rotation together with the wall causes no
+//! stress.
 //!
-//! The linearisation keeps differences across the face alone (thin layer).
+//! The linearisation contains the differences across the face only (thin-layer approximation).
 use super::block::Block;
 use super::reconstruct::Gradient;
 use crate::math::Vector;
@@ -25,53 +27,53 @@ use crate::math::jet::Scalar;
 use crate::physics::viscous::Slopes;
 use crate::physics::{Gas, Newtonian, Primitive, n_variables};
 
-/// Smallest part of the length of an edge that counts as its extent across the face: keeps the correction bounded, and of
-/// the sign that damps, where a face lies along its edge.
+/// Smallest fraction of the length of an edge that counts as its extent across the face. It keeps the correction
+/// bounded and damping where a face is nearly parallel to its edge.
 const SHORTEST: f64 = 0.3;
 
-/// What the gas does on the surface of a body.
+/// Condition of the gas at the surface of a body.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum WallCondition {
-    /// It slides.
+    /// Slip.
     Slip,
-    /// It sticks, and no heat passes.
+    /// No slip, adiabatic.
     Adiabatic,
-    /// It sticks, at this temperature over that of the free stream.
+    /// No slip, with this wall temperature divided by that of the free stream.
     Temperature(f64),
 }
 
-/// Viscosity of the gas and the walls it acts on.
+/// Viscosity of the gas and the conditions at its walls.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ViscousModel {
     /// Viscosity and heat conduction.
     pub medium: Newtonian,
-    /// One a body.
+    /// Condition at each body.
     pub wall_conditions: Vec<WallCondition>,
 }
 
 impl ViscousModel {
-    /// Contact with the body of that number.
+    /// Condition at the body with this number.
     #[inline]
     pub fn wall_condition(&self, body: u16) -> WallCondition {
         self.wall_conditions.get(usize::from(body)).copied().unwrap_or(WallCondition::Slip)
     }
 }
 
-/// Slopes of velocity and temperature along the normal of a wall.
+/// Stress and heat flux at a wall.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct WallSlopes<const D: usize> {
-    /// Stress of the gas on the wall without its pressure, force per area.
+    /// Viscous stress of the gas on the wall, force per area.
     pub stress: Vector<D>,
-    /// Heat that flows from the gas into the wall, per area and time.
+    /// Heat flux from the gas into the wall, per area and time.
     pub heat: f64,
 }
 
-/// Weights of the slope at the wall of a parabola through zero there and values at two heights.
+/// Weights of the slope at the wall of a parabola that is zero there and has given values at two heights.
 pub(super) fn slope_weights([low, high]: [f64; 2]) -> [f64; 2] {
     [high / low / (high - low), -low / high / (high - low)]
 }
 
-/// ∇θ of θ = γp/ρ.
+/// Gradient of the temperature θ = γp/ρ.
 #[inline(always)]
 pub(super) fn temperature_gradient<const D: usize, S: Scalar>(
     gas: &Gas,
@@ -87,14 +89,14 @@ pub(super) fn reach<const D: usize, S: Scalar>(d: &Vector<D, S>, m: &Vector<D, S
     m.dot(d).max(d.norm() * SHORTEST)
 }
 
-/// Direction of the face `s` of the edge `d`.
+/// Unit normal of the face `s` of the edge `d`.
 #[inline(always)]
 pub(super) fn direction<const D: usize, S: Scalar>(s: &Vector<D, S>, d: &Vector<D, S>) -> Vector<D, S> {
     let face = if s.norm_squared().value() > 0.0 { s } else { d };
     *face * face.norm().inverse()
 }
 
-/// What viscous fluxes follow from at a particle with the state `q` and the gradient `g`.
+/// Velocity, temperature and their gradients at a particle with the state `q` and the gradient `g`.
 #[inline(always)]
 pub(super) fn slopes<const D: usize, S: Scalar>(gas: &Gas, q: &Primitive<D, S>, g: &Gradient<D, S>) -> Slopes<D, S> {
     Slopes {
@@ -105,7 +107,7 @@ pub(super) fn slopes<const D: usize, S: Scalar>(gas: &Gas, q: &Primitive<D, S>, 
     }
 }
 
-/// Slopes in the middle of the edge `d` whose face has the normal `m`.
+/// Values and gradients at the midpoint of the edge `d`, whose face has the normal `m`.
 #[inline(always)]
 pub(super) fn middle<const D: usize, S: Scalar>(
     (a, b): (&Slopes<D, S>, &Slopes<D, S>),
@@ -128,8 +130,8 @@ pub(super) fn middle<const D: usize, S: Scalar>(
     }
 }
 
-/// ∂/∂U of (0, v + m (m·v)/3, v̄·(the same) + γ/Pr e) at the state `q`, v̄ held: what differences across a face of normal `m`
-/// exchange, over the viscosity.
+/// Derivative ∂/∂U of (0, v + m (m·v)/3, v̄·(v + m (m·v)/3) + γ/Pr e) at the state `q` with constant v̄: exchange by
+/// differences across a face of normal `m`, divided by the viscosity.
 #[inline(always)]
 pub(super) fn thin_layer<const D: usize>(
     gas: &Gas,
@@ -147,7 +149,7 @@ pub(super) fn thin_layer<const D: usize>(
     }
 }
 
-/// The same at a wall with the given velocity.
+/// This derivative at a wall of given velocity and condition.
 pub(super) fn at_contact<const D: usize>(
     gas: &Gas,
     medium: &Newtonian,
@@ -165,7 +167,7 @@ pub(super) fn at_contact<const D: usize>(
     block
 }
 
-/// ∂/∂U of v + m (m·v)/3, in the rows of momentum of a block that is zero.
+/// Derivative ∂/∂U of v + m (m·v)/3, in the momentum rows of a zero block.
 #[inline(always)]
 fn motion<const D: usize>(q: &Primitive<D>, m: &Vector<D>, block: &mut Block) {
     let across = q.velocity.dot(m);
@@ -178,7 +180,7 @@ fn motion<const D: usize>(q: &Primitive<D>, m: &Vector<D>, block: &mut Block) {
     }
 }
 
-/// ∂e/∂U of the internal energy per mass.
+/// Derivative ∂e/∂U of the internal energy per mass.
 #[inline(always)]
 fn energy<const D: usize>(q: &Primitive<D>, gas: &Gas) -> [f64; 5] {
     let mut row = [0.0; 5];

@@ -1,6 +1,7 @@
-//! Stress and heat over the cloud: walls, rates and the linearisation; between particles `edges` takes them along.
+//! Viscous terms of the whole cloud: walls, spectral radii and linearisation; the module `edges` computes the fluxes
+//! between particles.
 //!
-//! The pointwise parts and what they mean are in `viscous`.
+//! The pointwise functions and their derivation are in `viscous`.
 use std::sync::Arc;
 
 use super::block::Block;
@@ -23,14 +24,14 @@ use crate::physics::viscous::Slopes;
 use crate::physics::{Conserved, Primitive};
 
 impl<const D: usize> Fluid<D> {
-    /// Flux of stress and heat at particle `i` across `n`; zero without viscosity.
+    /// Viscous flux at particle `i` across `n`; zero for an inviscid gas.
     pub(super) fn viscous_flux(&self, work: &Work<D>, i: usize, n: &Vector<D>) -> Conserved<D> {
         let flux =
             |f: &Arc<ViscousModel>| f.medium.flux(&self.gas, &slopes(&self.gas, &work.state[i], &work.gradient[i]), n);
         self.viscous_model.as_ref().map_or(Conserved::ZERO, flux)
     }
 
-    /// Calls `add(i, change)` with what stress and heat through every piece of wall add to V dU/dt of the particle there.
+    /// Calls `add(i, change)` with the viscous contribution of every wall face to V dU/dt of the particle there.
     pub(super) fn viscous_walls<S: Number>(
         &self,
         faces: &[WallFace<D>],
@@ -41,7 +42,7 @@ impl<const D: usize> Fluid<D> {
         for face in faces {
             let mut through = self.viscous_wall(viscous_model, at, face);
             if at.0.taken_by(face).is_some() {
-                // friction is part of what is taken: heat alone is left
+                // the given wall traction includes friction: only the heat flux remains
                 through.energy = through.energy - through.momentum.along(&at.0.velocity_of(face.wall as usize));
                 through.momentum = Vector::zero();
             }
@@ -49,7 +50,7 @@ impl<const D: usize> Fluid<D> {
         }
     }
 
-    /// Flux of stress and heat through a piece of wall.
+    /// Viscous flux through a wall face.
     fn viscous_wall<S: Number>(
         &self,
         viscous_model: &ViscousModel,
@@ -71,7 +72,8 @@ impl<const D: usize> Fluid<D> {
         Conserved { momentum: transform.direction(&through.momentum), ..through }
     }
 
-    /// Slopes on the wall of interface particle `w` that moves with `motion`; `None` where the gas slides.
+    /// Velocity, temperature and their gradients on the wall of interface particle `w`, which moves with `motion`;
+    /// `None` at slip walls.
     fn at_wall<S: Number>(
         &self,
         viscous_model: &ViscousModel,
@@ -115,8 +117,8 @@ impl<const D: usize> Fluid<D> {
         })
     }
 
-    /// Stress and heat on the wall of interface particle `w`, which moves with `motion`, from the states and gradients in
-    /// `work`; `None` where the gas slides.
+    /// Stress and heat flux on the wall of interface particle `w`, which moves with `motion`, from the states and
+    /// gradients in `work`; `None` at slip walls.
     pub(super) fn wall_slopes(
         &self,
         (cloud, work): (&Cloud<D>, &Work<D>),
@@ -130,7 +132,7 @@ impl<const D: usize> Fluid<D> {
         Some(WallSlopes { stress: through.momentum, heat: through.energy })
     }
 
-    /// Adds the rates at which viscosity and conduction even out differences between particles.
+    /// Adds the decay rates of differences between particles by viscosity and heat conduction.
     pub(super) fn add_viscous_rate(
         &self,
         viscous_model: &ViscousModel,
@@ -155,7 +157,7 @@ impl<const D: usize> Fluid<D> {
         });
     }
 
-    /// Area over volume and distance of the face of an edge, as each end sees it.
+    /// Area divided by volume and distance of the face of an edge, for each end.
     #[inline(always)]
     fn exchange(&self, (e, weights): (&Edge<D>, &[Vector<D>; 2]), cloud: &Cloud<D>) -> (f64, f64) {
         let d = cloud.x[e.j()] - cloud.x[e.i()];
@@ -168,7 +170,7 @@ impl<const D: usize> Fluid<D> {
         (a_i.dot(&m).max(0.0) * across, (-a_j.dot(&m)).max(0.0) * across)
     }
 
-    /// Particles that the slope at a piece of wall depends on, with its derivative times area over volume.
+    /// Particles on which the slope at a wall face depends, with the derivative times area divided by volume.
     fn wall_exchange(&self, cloud: &Cloud<D>, face: &WallFace<D>) -> [(usize, f64); 2] {
         let (i, wall) = (face.i as usize, face.wall as usize);
         let size = face.area.norm();
@@ -182,7 +184,8 @@ impl<const D: usize> Fluid<D> {
         [(i, area / reach(&(cloud.x[wall] - cloud.x[i]), &normal)), (i, 0.0)]
     }
 
-    /// Viscosity times area over volume and distance of an edge, as each end sees it, and what [`thin_layer`] gives for both ends.
+    /// Viscosity times area divided by volume and distance of an edge, for each end, and the [`thin_layer`] blocks of
+    /// both ends.
     #[inline(always)]
     pub(super) fn viscous_edge(
         &self,
@@ -202,7 +205,7 @@ impl<const D: usize> Fluid<D> {
         ((mu * to_i, mu * to_j), layers)
     }
 
-    /// Adds −∂/∂U of stress and heat on pieces of wall.
+    /// Adds −∂/∂U of the viscous fluxes through wall faces.
     pub(super) fn add_viscous_walls(
         &self,
         (frame, work): (&Frame<D>, &Work<D>),

@@ -1,35 +1,35 @@
-//! Conditions as rows of the fit: what follows from the cloud alone.
+//! Constrained fits for the states on walls: the weights, which depend on the cloud only.
 //!
-//! The state of an interface particle follows from the fluid particles in front of it by a quadratic fit in
-//! which the normal derivative at the wall is imposed exactly (a Neumann row taken into the fit, eqs (12)-(15)): with
-//! coordinates t along and n across the wall, f(t, n) = f_w + g n + (linear in t, quadratic in t, n). Solved once per cloud it
-//! gives f_w = Σ_k W_k f_k − g Σ_k W_k n_k. What slopes g are imposed says `wall_state`.
+//! The state of an interface particle follows from the fluid particles in front of it by a quadratic fit in which the
+//! normal derivative at the wall is imposed exactly (a Neumann condition in the fit, eqs (12)-(15)). With coordinates t
+//! along and n across the wall, f(t, n) = f_w + g n + (linear in t, quadratic in t, n). Solved once per cloud, it gives
+//! f_w = Σ_k W_k f_k − g Σ_k W_k n_k. The slopes g are defined in `wall_state`.
 use crate::cloud::Cloud;
 use crate::math::Vector;
 use crate::math::least_squares::Fit;
 use crate::math::square::frame_of;
 use crate::math::sweep::sweep;
 
-/// Sum of absolute weights above which a quadratic fit is replaced by a linear one.
+/// Sum of the absolute weights above which a quadratic fit is replaced by a linear one.
 const LARGEST_AMPLIFICATION: f64 = 6.0;
-/// Round-off of the sum of weights, which is one.
+/// Round-off of the sum of the weights, which is one.
 const CONSTANT_TOLERANCE: f64 = 1e-9;
-/// Rows that a quadratic fit must have beyond its coefficients.
+/// Number of rows that a quadratic fit must have in excess of its coefficients.
 const SPARE_ROWS: usize = 3;
-/// Most coefficients of a constrained fit: three dimensions, quadratic.
-const MOST: usize = 9;
+/// Greatest number of coefficients of a constrained fit: quadratic in 3-D.
+const MAX_COEFFICIENTS: usize = 9;
 
 /// Fits of all interface particles.
 #[derive(Clone, Debug, Default)]
 pub struct WallFits {
     weight: Vec<f64>,
     normal_offset: Vec<f64>,
-    /// Number of fits that fell back to linear.
+    /// Number of fits that are linear instead of quadratic.
     pub n_linear: usize,
 }
 
 impl WallFits {
-    /// Fits every interface particle of the cloud.
+    /// Computes the fit of every interface particle of the cloud.
     #[doc(alias = "eq12")]
     pub fn new<const D: usize>(cloud: &Cloud<D>) -> Self {
         let mut fits = vec![(Vec::new(), 0.0, false); cloud.interface.len()];
@@ -45,18 +45,18 @@ impl WallFits {
         cloud.wall_stencils.of(w).iter().zip(weights).map(|(k, weight)| (*k as usize, *weight))
     }
 
-    /// Σ W n of interface particle `w`.
+    /// Offset Σ W n of interface particle `w`.
     pub fn normal_offset(&self, w: usize) -> f64 {
         self.normal_offset[w]
     }
 
-    /// Bytes held.
+    /// Memory of the fits in bytes.
     pub fn bytes(&self) -> usize {
         8 * (self.weight.len() + self.normal_offset.len())
     }
 }
 
-/// Weights of one interface particle: (W, Σ W n, fell back to linear).
+/// Weights of one interface particle: (W, Σ W n, true for a linear fit).
 fn fit_wall<const D: usize>(cloud: &Cloud<D>, w: usize) -> (Vec<f64>, f64, bool) {
     let i = cloud.n_fluid + w;
     let (h, normal) = (cloud.spacing[i], cloud.interface[w].normal);
@@ -72,7 +72,7 @@ fn fit_wall<const D: usize>(cloud: &Cloud<D>, w: usize) -> (Vec<f64>, f64, bool)
         linear = true;
         solve_fit(&offsets, (&normal, &axes), h, D, &mut weights);
     }
-    // a crevice: too little fluid for a slope, or all of it far away
+    // a crevice: too few fluid particles for a slope, or all of them far away
     if offsets.len() <= D || !is_sound(&weights) {
         solve_fit(&offsets, (&normal, &axes), h, 1, &mut weights);
     }
@@ -80,8 +80,9 @@ fn fit_wall<const D: usize>(cloud: &Cloud<D>, w: usize) -> (Vec<f64>, f64, bool)
     (weights, normal_offset, linear)
 }
 
-/// Offsets to the particles of a fit, and the factor by which they are stretched across the wall: where all of them lie in
-/// layers, distances along the wall and heights above it, so that a thin layer on a curved wall stays a layer.
+/// Offsets to the particles of a fit, and the factor by which they are stretched across the wall. Where all of them lie
+/// in layers, the offsets are distances along the wall and heights above it, so that a thin layer on a curved wall
+/// remains a layer.
 fn wall_offsets<const D: usize>(cloud: &Cloud<D>, w: usize, axes: &[Vector<D>; D]) -> (Vec<Vector<D>>, f64) {
     let (i, list) = (cloud.n_fluid + w, cloud.wall_stencils.of(w));
     let normal = &cloud.interface[w].normal;
@@ -106,13 +107,14 @@ fn wall_offsets<const D: usize>(cloud: &Cloud<D>, w: usize, axes: &[Vector<D>; D
     (list.iter().map(place).collect(), stretch)
 }
 
-/// Weights that reproduce constants, which a rank-deficient fit need not do, without amplifying differences.
+/// True for weights that reproduce constants, which a rank-deficient fit need not do, and do not amplify differences.
 fn is_sound(weights: &[f64]) -> bool {
     let (sum, size) = weights.iter().fold((0.0, 0.0), |(sum, size), w| (sum + w, size + w.abs()));
     (sum - 1.0f64).abs() < CONSTANT_TOLERANCE && size <= LARGEST_AMPLIFICATION
 }
 
-/// The row that gives f_w from the values of the fluid particles; `n` coefficients, weights 1/r².
+/// The weights that give f_w from the values of the fluid particles, for a fit with `n` coefficients and the weights
+/// 1/r².
 fn solve_fit<const D: usize>(
     offsets: &[Vector<D>],
     frame: (&Vector<D>, &[Vector<D>; D]),
@@ -128,13 +130,14 @@ fn solve_fit<const D: usize>(
     fit.row_of_inverse(0, weights);
 }
 
-/// Basis functions without the one whose coefficient the condition fixes: 1, tangents, then all squares and products.
-fn basis<const D: usize>(d: &Vector<D>, frame: (&Vector<D>, &[Vector<D>; D]), h: f64) -> [f64; MOST] {
+/// Basis functions without the one whose coefficient the condition determines: 1, tangential coordinates, then all
+/// squares and products.
+fn basis<const D: usize>(d: &Vector<D>, frame: (&Vector<D>, &[Vector<D>; D]), h: f64) -> [f64; MAX_COEFFICIENTS] {
     let (normal, axes) = frame;
     let mut c = [0.0; D];
     (0..D - 1).for_each(|a| c[a] = d.dot(&axes[a]) / h);
     c[D - 1] = d.dot(normal) / h;
-    let mut b = [0.0; MOST];
+    let mut b = [0.0; MAX_COEFFICIENTS];
     b[0] = 1.0;
     b[1..D].copy_from_slice(&c[..D - 1]);
     let mut k = D;
@@ -155,7 +158,7 @@ pub(super) fn lowest_two<const D: usize>(cloud: &Cloud<D>, w: usize) -> Option<(
     Some(([*a as usize, *b as usize], [*low, *high]))
 }
 
-/// Weights W at two heights, and Σ W n, of a parabola through them whose slope at the wall is given.
+/// Weights W at two heights, and Σ W n, of a parabola through them with a given slope at the wall.
 pub(super) fn parabola([low, high]: [f64; 2]) -> ([f64; 2], f64) {
     let part = low * low / (high * high - low * low);
     ([1.0 + part, -part], low * high / (low + high))

@@ -1,55 +1,58 @@
-//! The state on a wall.
+//! The state of the gas on a wall.
 //!
-//! *Slip walls.* The state of an interface particle is f_w = Σ_k W_k f_k − g Σ_k W_k n_k of the fluid particles in front of it
-//! (`wall_fits`) with a slope g across the wall. Imposed are
+//! *Slip walls.* The state of an interface particle is f_w = Σ_k W_k f_k − g Σ_k W_k n_k, with the fluid particles in
+//! front of it
+//! (`wall_fits`) and a slope g across the wall. The conditions are
 //!
-//! - ∂(p/ρ^γ)/∂n = 0: entropy does not vary across the wall;
-//! - ∂u_t/∂n = −κ u_t: the flow at the wall is irrotational (Crocco), κ the curvature of the wall (tensor in 3-D);
-//! - ∂p/∂n = ρ κ u_t²: the centrifugal balance; walls that move add the rate of rotation and the acceleration.
+//! - ∂(p/ρ^γ)/∂n = 0: the entropy does not vary across the wall;
+//! - ∂u_t/∂n = −κ u_t: the flow at the wall is irrotational (Crocco), with the curvature κ of the wall (a tensor in
+//!   3-D);
+//! - ∂p/∂n = ρ κ u_t²: centrifugal equilibrium; moving walls add their rate of rotation and acceleration.
 //!
-//! *Walls that the gas sticks to* give it their velocity and temperature or ∂θ/∂n = 0; ∂p/∂n = −ρ n·a_w.
+//! *No-slip walls* impose their velocity, and their temperature or ∂θ/∂n = 0; ∂p/∂n = −ρ n·a_w.
 //!
-//! Both are functions of plain values: the wall, and weights W_k and states of the particles in front of it.
+//! Both are functions of plain values: the wall, and the weights W_k and states of the particles in front of it.
 use super::wall_motion::WallMotion;
 use crate::math::Vector;
 use crate::math::jet::Scalar;
 use crate::physics::{Gas, Primitive};
 
-/// Smallest fraction of the lowest pressure and entropy in front of a wall that its state may have.
+/// Smallest fraction of the lowest pressure and entropy in front of a wall that the wall state may have.
 const FLOOR: f64 = 0.2;
-/// Rounds that settle the pressure on a slip wall, whose density follows it at constant entropy.
+/// Number of iterations for the pressure on a slip wall, on which the density depends at constant entropy.
 const ROUNDS: usize = 3;
-/// Terms of the Neumann series of (I − B K)⁻¹: B K is small, spacing over radius of curvature, and at most half ([`tempered`]).
+/// Number of terms of the Neumann series of (I − B K)⁻¹: B K is small (spacing over radius of curvature) and at most
+/// one half ([`tempered`]).
 const TERMS: usize = 6;
-/// k of [`tempered`] for the slope of the speed and that of the pressure.
+/// Parameter k of [`tempered`] for the slope of the velocity and for that of the pressure.
 const OF_SPEED: f64 = 2.0;
 const OF_PRESSURE: f64 = 2.9;
-/// Most of its pressure by which the acceleration of a wall may push the gas on it.
-const MOST_INERTIA: f64 = 0.5;
+/// Greatest fraction of its pressure by which the acceleration of a wall may change the pressure on it.
+const MAX_INERTIA: f64 = 0.5;
 
-/// A piece of wall.
+/// Geometry and motion of the wall at an interface particle.
 #[derive(Clone, Copy, Debug)]
 pub struct Wall<const D: usize, S = f64> {
     /// Unit normal into the gas.
     pub normal: Vector<D, S>,
-    /// Rows of K = ∂n/∂x along the wall: positive for a convex body.
+    /// Rows of the curvature tensor K = ∂n/∂x along the wall; positive for a convex body.
     pub curvature: [Vector<D, S>; D],
-    /// Σ W n: what a slope of 1 across the wall takes from the weighted mean.
+    /// Offset B = Σ W n: effect of a unit slope across the wall on the weighted mean.
     pub offset: S,
-    /// Velocity w.
+    /// Velocity w of the wall.
     pub velocity: Vector<D, S>,
-    /// Rotation, stretching and acceleration; nothing where all stands still.
+    /// Rotation, stretching and acceleration of the wall; `None` for a wall at rest.
     pub motion: Option<WallMotion<D, S>>,
 }
 
-/// State on a wall along which the gas slides, from the particles in front of it: weights W and states.
+/// State on a slip wall from the particles in front of it, given as pairs of weight W and state.
 ///
-/// With r = v − w the velocity along the wall, G = ∂w/∂x, K the curvature and a_w the acceleration of the wall:
+/// With the velocity r = v − w along the wall, G = ∂w/∂x, the curvature K and the acceleration a_w of the wall:
 ///
 /// - the flow at the wall is irrotational: ∂v_t/∂n = Gᵀn − K r, tangential part;
 /// - momentum across the wall: ∂p/∂n = ρ [r·K r − 2 n·G r − n·a_w].
 ///
-/// Extrapolation may not bring pressure or entropy below a fraction of the lowest value in front of the wall.
+/// The extrapolation cannot reduce pressure or entropy below a fraction of the lowest value in front of the wall.
 pub fn slip_wall<const D: usize, S: Scalar>(
     gas: &Gas,
     wall: &Wall<D, S>,
@@ -82,8 +85,8 @@ pub fn slip_wall<const D: usize, S: Scalar>(
     Primitive { density: density(pressure), velocity, pressure }
 }
 
-/// State on a wall that the gas sticks to, with ∂p/∂n = −ρ n·a_w and ∂θ/∂n = 0, or at the given temperature, from the particles
-/// in front of it: weights W and states.
+/// State on a no-slip wall with ∂p/∂n = −ρ n·a_w and ∂θ/∂n = 0, or with a given temperature, from the particles in
+/// front of it, given as pairs of weight W and state.
 pub fn no_slip_wall<const D: usize, S: Scalar>(
     gas: &Gas,
     wall: &Wall<D, S>,
@@ -100,7 +103,7 @@ pub fn no_slip_wall<const D: usize, S: Scalar>(
     let theta = temperature.unwrap_or(sum[1].max(lowest[1] * FLOOR));
     let inertia = wall.motion.as_ref().map_or(zero, |m| wall.normal.dot(&m.acceleration));
     // p_w = p + B ρ_w n·a_w with ρ_w = γ p_w/θ
-    let pushed = (wall.offset * inertia * gas.gamma / theta).min(S::constant(MOST_INERTIA));
+    let pushed = (wall.offset * inertia * gas.gamma / theta).min(S::constant(MAX_INERTIA));
     let pressure = (sum[0] / (S::constant(1.0) - pushed)).max(lowest[0] * FLOOR);
     Primitive { density: pressure * gas.gamma / theta, velocity: wall.velocity, pressure }
 }
@@ -109,7 +112,8 @@ fn along_wall<const D: usize, S: Scalar>(v: &Vector<D, S>, normal: &Vector<D, S>
     *v - *normal * v.dot(normal)
 }
 
-/// Velocity along the wall, relative to it, of gas with the weighted mean velocity `v`: solves (I − B K) r = v − w − B Gᵀn.
+/// Velocity along the wall, relative to it, of gas with the weighted mean velocity `v`: solves (I − B K) r = v − w − B
+/// Gᵀn.
 fn sliding<const D: usize, S: Scalar>(wall: &Wall<D, S>, v: &Vector<D, S>) -> Vector<D, S> {
     let turning = |m: &WallMotion<D, S>| {
         let rows = m.wall_velocity_gradient.iter().enumerate();
@@ -122,20 +126,21 @@ fn sliding<const D: usize, S: Scalar>(wall: &Wall<D, S>, v: &Vector<D, S>) -> Ve
     (0..TERMS).fold(along, |u, _| along_wall(&(along + bent(&u)), &wall.normal))
 }
 
-/// Factor on the curvature where a wall is bent within a spacing, and 1 where it is not.
+/// Factor on the curvature where the radius of curvature is not large compared with the spacing; 1 on flat walls.
 ///
-/// The slope on the wall, κ u, holds on the wall alone: round a cylinder u = u_w (1 + 1/(1 + κn)²)/2, which falls to half and no
-/// further. A fit through particles at h/2 and 3h/2 finds u_w of that flow within 2 % for any radius, and its p_w within 8 %, when
-/// the slope is taken (1 + (k x)^(3/2))^(−2/3) times, x = B κ; without, it finds any speed at all where x nears 1.
+/// The slope κ u holds only on the wall itself: around a cylinder u = u_w (1 + 1/(1 + κn)²)/2, which decreases to one
+/// half and no further. A fit through particles at h/2 and 3h/2 yields u_w of that flow within 2 % for any radius, and
+/// p_w within 8 %, when the slope is multiplied by (1 + (k x)^(3/2))^(−2/3), x = B κ; without this factor, the error is
+/// unbounded as x approaches 1.
 fn tempered<const D: usize, S: Scalar>(wall: &Wall<D, S>, k: f64) -> S {
     let one = S::constant(1.0);
     let square = wall.curvature.iter().fold(S::constant(0.0), |sum, row| sum + row.dot(row));
     let x2 = square * wall.offset * wall.offset * (k * k);
-    // a flat wall has no derivative of a root
+    // the root has no derivative on a flat wall
     if x2.value() > 0.0 { (x2.powf(0.75) + one).powf(-2.0 / 3.0) } else { one }
 }
 
-/// r·K r.
+/// The product r·K r.
 fn bending<const D: usize, S: Scalar>(wall: &Wall<D, S>, r: &Vector<D, S>) -> S {
     Vector::from_fn(|d| wall.curvature[d].dot(r)).dot(r)
 }
