@@ -1,11 +1,12 @@
-//! Walls that bend: normals, areas, curvature and velocity gradient of a surface that its modes deform.
+//! Deforming walls: normals, areas, curvature and velocity gradient.
 //!
-//! A surface point X goes to X + u(X) with u = Σ_m q_m φ_m, and F = 1 + ∂u/∂X is the gradient of that map. Velocities and
-//! accelerations follow from the positions; what is needed besides is the rate Ḟ F⁻¹ at which the wall stretches and turns.
+//! A surface point X moves to X + u(X) with u = Σ_m q_m φ_m; F = 1 + ∂u/∂X is the deformation gradient. Velocities and
+//! accelerations follow from the positions. In addition, the rate Ḟ F⁻¹ of stretching and rotation of the wall is
+//! necessary.
 //!
-//! Of a body made of particles the displacement is known on the surface alone: F along it and its second derivatives come from a
-//! parabola through the interface particles around, on the same smooth piece; across it goes the normal. That is all that area
-//! vectors, normals and curvature depend on.
+//! For a solid of particles, the displacement is known on the surface only. The derivatives of F along the surface come
+//! from a parabola through the surrounding interface particles of the same smooth piece; across it, the normal is
+//! mapped to the normal. Area vectors, normals and curvature depend on nothing else.
 use crate::cloud::{Cloud, Interface, Strain};
 use crate::math::Vector;
 use crate::math::jet::Jet;
@@ -13,12 +14,12 @@ use crate::math::moving_fit::{Basis, weights};
 use crate::math::sweep::sweep_slots;
 use crate::motion::{BodyMotion, Carried, Expansion, tangents};
 
-/// Interface particles around one that say how the surface bends there, in the plane and in space.
+/// Number of surrounding interface particles for these derivatives, in 2-D and 3-D.
 const AROUND: [usize; 2] = [6, 14];
-/// Cosine of the angle between normals beyond which a particle is on another side.
+/// Cosine of the angle between normals below which a particle lies on another side.
 const OTHER_SIDE: f64 = 0.3;
 
-/// The modes of the bodies at every interface particle; empty where no body bends.
+/// Modes of the bodies at every interface particle; empty when no body deforms.
 #[derive(Clone, Debug, Default)]
 pub struct DeformingSurface<const D: usize> {
     modes: Vec<Vec<Expansion<D>>>,
@@ -26,32 +27,32 @@ pub struct DeformingSurface<const D: usize> {
     laws: Vec<BodyMotion<D>>,
 }
 
-/// How an interface particle of a body made of particles goes, and what its surroundings say of the bending there.
+/// Displacement and local derivative weights at an interface particle of a solid of particles.
 #[derive(Clone, Debug)]
 struct Bending<const D: usize> {
     body: usize,
     carried: Carried<D>,
     tangents: [Vector<D>; 2],
     around: Vec<u32>,
-    /// Weights of the differences to those around in ∂/∂ξ, ∂/∂η, and ∂²/∂ξ², ∂²/∂ξ∂η, ∂²/∂η².
+    /// Weights of differences to the surrounding particles in ∂/∂ξ, ∂/∂η, ∂²/∂ξ², ∂²/∂ξ∂η and ∂²/∂η².
     weights: [Vec<f64>; 5],
 }
 
-/// How the surface at one interface particle is deformed at one time.
+/// Deformation of the surface at one interface particle at one time.
 pub(super) struct SurfaceStrain<const D: usize> {
-    /// The map and its second derivatives.
+    /// Deformation gradient and its derivatives.
     pub(super) strain: Strain<D>,
-    /// Rows of Ḟ F⁻¹.
+    /// Rows of the rate Ḟ F⁻¹.
     pub(super) rate: [Vector<D>; D],
     /// Displacement in each mode.
     pub(super) shifts: Vec<Vector<D>>,
 }
 
-/// Displacement, velocity and acceleration of an interface particle of a body made of particles.
+/// Displacement, velocity and acceleration of an interface particle of a solid of particles.
 pub(super) type Course<const D: usize> = [Vector<D>; 3];
 
 impl<const D: usize> DeformingSurface<D> {
-    /// The surfaces of bodies that follow `laws`.
+    /// The surfaces of bodies with the motions `laws`.
     pub fn new(cloud: &Cloud<D>, laws: &[BodyMotion<D>]) -> Self {
         if !laws.iter().any(BodyMotion::bends) {
             return Self::default();
@@ -70,8 +71,8 @@ impl<const D: usize> DeformingSurface<D> {
         Self { modes, particles, laws: laws.to_vec() }
     }
 
-    /// How the interface particles of bodies made of particles go where the coordinates of all bodies are `jets`; empty where there
-    /// are none.
+    /// Displacements of the interface particles of solids of particles for the coordinates `jets` of all bodies; empty
+    /// when there are no such solids.
     pub(super) fn carried(&self, jets: &[Jet]) -> Vec<Course<D>> {
         if self.particles.is_empty() {
             return Vec::new();
@@ -89,7 +90,7 @@ impl<const D: usize> DeformingSurface<D> {
         all
     }
 
-    /// How the surface of a body made of particles is deformed at interface particle `w`, which is `rest` at rest.
+    /// Deformation of the surface of a solid of particles at interface particle `w`; `rest` is its undeformed data.
     pub(super) fn carried_strain(&self, w: usize, at: &[Course<D>], rest: &Interface<D>) -> Option<SurfaceStrain<D>> {
         let bending = self.particles.get(w)?.as_ref()?;
         let sum = |weights: &[f64], part: usize| {
@@ -100,7 +101,7 @@ impl<const D: usize> DeformingSurface<D> {
         let along = [0, 1].map(|a| bending.tangents[a] + sum(&bending.weights[a], 0));
         let lifted = lifted::<D>(&along).unwrap_or(n);
         let tangents = bending.tangents;
-        // F takes the tangents to what they become, and the normal to the normal
+        // F maps the tangents to the deformed tangents and the normal to the deformed normal
         let map: [Vector<D>; D] =
             std::array::from_fn(|i| (0..D - 1).fold(n * lifted[i], |row, a| row + tangents[a] * along[a][i]));
         let curved = |a: usize, b: usize| tangents[a].dot(&Vector::from_fn(|d| rest.curvature[d].dot(&tangents[b])));
@@ -118,14 +119,14 @@ impl<const D: usize> DeformingSurface<D> {
         let inverse = strain.inverse();
         let speeds = [0, 1].map(|a| sum(&bending.weights[a], 1));
         let rate = std::array::from_fn(|i| {
-            // row i of Ḟ, then times F⁻¹
+            // row i of Ḟ, then multiplied by F⁻¹
             let row = (0..D - 1).fold(Vector::ZERO, |row, a| row + tangents[a] * speeds[a][i]);
             (0..D).fold(Vector::ZERO, |sum: Vector<D>, k| sum + inverse[k] * row[k])
         });
         Some(SurfaceStrain { strain, rate, shifts: Vec::new() })
     }
 
-    /// The surface at interface particle `w` at time `t`; `None` where it does not bend.
+    /// Deformation of the surface at interface particle `w` at time `t`; `None` when the body does not deform.
     pub(super) fn surface_strain(&self, w: usize, law: &BodyMotion<D>, t: f64) -> Option<SurfaceStrain<D>> {
         let modes = self.modes.get(w).filter(|m| !m.is_empty())?;
         let mut strain = Strain { map: std::array::from_fn(Vector::axis), second: [[Vector::ZERO; D]; D] };
@@ -138,13 +139,13 @@ impl<const D: usize> DeformingSurface<D> {
             }
         }
         let inverse = strain.inverse();
-        // row i of Ḟ times F⁻¹
+        // row i of Ḟ multiplied by F⁻¹
         let rate = std::array::from_fn(|i| (0..D).fold(Vector::ZERO, |sum, k| sum + inverse[k] * rates[i][k]));
         Some(SurfaceStrain { strain, rate, shifts: modes.iter().map(|m| m.value).collect() })
     }
 }
 
-/// The unit normal of a surface that these two directions lie in, the second of them left aside in the plane.
+/// Unit normal of the surface with these two tangents; in 2-D the second one is ignored.
 fn lifted<const D: usize>(along: &[Vector<D>; 2]) -> Option<Vector<D>> {
     let normal = match D {
         2 => Vector::from_fn(|d| if d == 0 { along[0][1] } else { -along[0][0] }),
@@ -158,7 +159,7 @@ fn lifted<const D: usize>(along: &[Vector<D>; 2]) -> Option<Vector<D>> {
     (size > 0.0 && size.is_finite()).then(|| normal * (1.0 / size))
 }
 
-/// What the surroundings of an interface particle say; `None` where its body is not made of particles.
+/// Local derivative weights of an interface particle; `None` when its body is not a solid of particles.
 fn bending<const D: usize>(cloud: &Cloud<D>, laws: &[BodyMotion<D>], w: usize) -> Option<Bending<D>> {
     let own = &cloud.interface[w];
     let net = laws.get(usize::from(own.body))?.net()?;

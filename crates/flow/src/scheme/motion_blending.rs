@@ -1,13 +1,14 @@
-//! Particles that follow moving bodies and stay where they are far away.
+//! Motion of the cloud with moving bodies, decaying to zero far away.
 //!
-//! A particle at X before any motion is at x(t) = X + Σ_b φ_b(X) (P_b(t) X − X), with P_b the motion of body b. With one body
-//! φ = ψ(d), d the distance to it: 1 near the body, 0 far from it, a quintic in between, so that two derivatives are
-//! continuous. Several bodies share by inverse distance (Shepard 1968): φ_b = ψ(d_b) d_b⁻³ / Σ_c d_c⁻³. On the surface of a
-//! body its own φ is 1. All x(t) are linear in the poses, so differences of positions are exact. A body that bends takes X to
-//! P_b(t) (X + Σ_m q_m(t) φ_m(X)), with its modes φ_m continued into the field by their own interpolation.
+//! A particle at X before any motion is at x(t) = X + Σ_b φ_b(X) (P_b(t) X − X), where P_b is the motion of body b. For
+//! one body, φ = ψ(d) with the distance d to it: 1 near the body, 0 far away, a quintic in between with two continuous
+//! derivatives. Several bodies are weighted by inverse distance (Shepard 1968): φ_b = ψ(d_b) d_b⁻³ / Σ_c d_c⁻³, so that
+//! φ of a body is 1 on its own surface. All x(t) are linear in the poses, so that differences of positions are exact. A
+//! deforming body maps X to P_b(t) (X + Σ_m q_m(t) φ_m(X)), where its modes φ_m are continued into the field by their
+//! own interpolation.
 //!
-//! Around bodies made of particles the cloud slides along planes of symmetry: displacement across one fades to nothing as a particle
-//! is nearer to it than to the body, and these planes do not bound how far the motion reaches.
+//! Around solids of particles, the cloud slides along planes of symmetry: the displacement normal to a plane decays to
+//! zero where a particle is nearer to it than to the body, and these planes do not limit the extent of the motion.
 use crate::cloud::Cloud;
 use crate::math::jet::Jet;
 use crate::math::sweep::sweep_slots;
@@ -16,45 +17,45 @@ use crate::motion::{BodyMotion, Carried, PointTrajectory, RigidPose, SurfaceNet}
 
 use super::discretisation::{Path, Places};
 
-/// Distance in body lengths within which particles move as the body does.
+/// Distance from a body, in body lengths, within which particles move with it.
 const INNER: f64 = 1.0;
-/// Distance beyond which particles rest, in body lengths or, if that is more, in greatest displacements.
+/// Distance beyond which particles are at rest: in body lengths, or in greatest displacements if this is more.
 const OUTER: f64 = 8.0;
-/// Times at which displacements are looked at.
+/// Number of times at which displacements are sampled.
 const TIMES: usize = 256;
-/// Greatest part of the way to the sides of the domain.
+/// Greatest fraction of the distance to the sides of the domain over which particles move.
 const REACH: f64 = 0.9;
-/// Power of the distance in the shares of several bodies.
+/// Exponent of the inverse distance in the weights of several bodies.
 const POWER: i32 = 3;
-/// Points on a body that distances are measured from: blending needs no more.
+/// Number of points on a body for the computation of distances; more are not necessary.
 const SAMPLES: usize = 2000;
-/// Rounds in which the place before any motion is found.
+/// Greatest number of iterations for the position before any motion.
 const ROUNDS: usize = 60;
 
-/// One body.
+/// Data of one body.
 struct Body<const D: usize> {
-    /// The particles that follow it.
+    /// Trajectories of the particles that follow it.
     trajectory: PointTrajectory<D>,
     points: Vec<Vector<D>>,
     inner: f64,
     outer: f64,
-    /// Made of particles.
+    /// True for a solid of particles.
     soft: bool,
 }
 
-/// Motion of the bodies spread into the cloud.
+/// Motion of the bodies continued into the cloud.
 pub struct MotionBlending<const D: usize> {
     bodies: Vec<Body<D>>,
-    /// φ of each particle and body.
+    /// Weight φ of each particle and body.
     share: Vec<f32>,
-    /// Planes of symmetry: axis and place.
+    /// Planes of symmetry: axis and coordinate.
     planes: Vec<(usize, f64)>,
-    /// What is left of each component of the displacement by bodies made of particles; empty where there are none.
+    /// Factor on each component of the displacement by solids of particles; empty when there are none.
     sliding: Vec<Vector<D>>,
 }
 
 impl<const D: usize> MotionBlending<D> {
-    /// Spreads the motion of the bodies until `until`, one law for each.
+    /// Prepares the motion of the bodies, one for each, until the time `until`.
     pub fn new(cloud: &Cloud<D>, laws: &[BodyMotion<D>], until: f64) -> Self {
         let bodies: Vec<Body<D>> = laws.iter().enumerate().map(|(b, law)| body(cloud, (b, law), until)).collect();
         let (share, planes) = (vec![0.0; cloud.n_real() * bodies.len()], planes(cloud));
@@ -86,7 +87,7 @@ impl<const D: usize> MotionBlending<D> {
         all
     }
 
-    /// Shares of particle `i`: on a surface just its own body counts.
+    /// Weights of particle `i`; on a surface only its own body has one.
     fn own_shares(&self, cloud: &Cloud<D>, i: usize) -> Vec<f64> {
         if cloud.interface_range().contains(&i) {
             let own = usize::from(cloud.interface[i - cloud.n_fluid].body);
@@ -95,7 +96,7 @@ impl<const D: usize> MotionBlending<D> {
         self.shares(&cloud.x[i])
     }
 
-    /// What is left of each component of the displacement at `x` by bodies made of particles.
+    /// Factor on each component of the displacement at `x` by solids of particles.
     fn slides(&self, x: &Vector<D>) -> Vector<D> {
         let near = self.bodies.iter().filter(|b| b.soft).map(|b| b.distance(x)).fold(f64::INFINITY, f64::min);
         let mut left = Vector::from_fn(|_| 1.0);
@@ -119,14 +120,14 @@ impl<const D: usize> Body<D> {
         self.points.iter().map(|p| (*p - *x).norm_squared()).fold(f64::INFINITY, f64::min).sqrt()
     }
 
-    /// ψ(d).
+    /// Decay function ψ(d).
     fn fade(&self, d: f64) -> f64 {
         let s = ((d - self.inner) / (self.outer - self.inner)).clamp(0.0, 1.0);
         1.0 - s * s * s * (10.0 - 15.0 * s + 6.0 * s * s)
     }
 }
 
-/// How the particles that move with body number `b` go with its surface.
+/// Relation between the particles that move with body number `b`, a solid of particles, and its surface.
 fn carried<const D: usize>(
     cloud: &Cloud<D>,
     (b, net): (usize, &SurfaceNet<D>),
@@ -152,7 +153,7 @@ fn body<const D: usize>(cloud: &Cloud<D>, (b, law): (usize, &BodyMotion<D>), unt
     let every = all.len().div_ceil(SAMPLES).max(1);
     let bounds = Bounds::around(&all);
     let length = bounds.extent().max_abs();
-    // sides that cut through the body (planes of symmetry), or lie behind it, do not hold it back
+    // sides that cut through the body (planes of symmetry), or lie behind it, do not limit the motion
     let domain = Bounds::around(&cloud.x[..cloud.n_fluid]);
     let soft = law.net().is_some();
     let slides = |d: usize, side: f64| {
@@ -170,7 +171,7 @@ fn body<const D: usize>(cloud: &Cloud<D>, (b, law): (usize, &BodyMotion<D>), unt
     Body { trajectory: PointTrajectory::new(law, &[]), points, inner: (INNER * length).min(0.25 * outer), outer, soft }
 }
 
-/// How far the corners of the box around a body get from where they start, until `until`, and its modes from there.
+/// Greatest displacement of the corners of the bounding box of a body and of its modes until the time `until`.
 fn displacement<const D: usize>(bounds: &Bounds<D>, law: &BodyMotion<D>, until: f64) -> f64 {
     let corner = |k: usize| Vector::from_fn(|d| if k >> d & 1 == 0 { bounds.min[d] } else { bounds.max[d] });
     let far = |pose: RigidPose<D>| (0..1 << D).map(|k| (pose.point(&corner(k)) - corner(k)).norm()).fold(0.0, f64::max);
@@ -180,7 +181,8 @@ fn displacement<const D: usize>(bounds: &Bounds<D>, law: &BodyMotion<D>, until: 
     (0..=TIMES).map(|k| at(until * k as f64 / TIMES as f64)).fold(0.0, f64::max)
 }
 
-/// x + Σ_b φ_b (x_b − x), where body number b takes x to x_b = `carried(b)`, and `left` is left of the components of that displacement.
+/// x + Σ_b φ_b (x_b − x), where body number b moves x to x_b = `carried(b)` and `left` are the factors on the
+/// components.
 fn blended<const D: usize>(
     x: &Vector<D>,
     share: impl Iterator<Item = f64>,
@@ -193,7 +195,7 @@ fn blended<const D: usize>(
     })
 }
 
-/// Planes of symmetry of a cloud: axis and place.
+/// Planes of symmetry of a cloud: axis and coordinate.
 fn planes<const D: usize>(cloud: &Cloud<D>) -> Vec<(usize, f64)> {
     let mut all: Vec<(usize, f64)> = Vec::new();
     for t in &cloud.transforms {

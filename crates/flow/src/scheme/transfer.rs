@@ -1,13 +1,15 @@
-//! The state of particles that travel, on a cloud built anew where they are.
+//! Transfer of the state of Lagrangian particles to a rebuilt cloud.
 //!
-//! Particles that stay keep their state. One that is inserted gets it by a least-squares fit of second degree through those
-//! around it, of the conserved quantities, held within the values it is fitted to. Linear fields are transferred exactly. A
-//! particle that is inserted takes its volume from those around it in the proportions of its fit, one that is removed leaves
-//! its volume to them: what is lost is V (fit − U) of each removed particle, which is added up.
+//! Particles that remain keep their state. The state of an inserted particle is a quadratic least-squares fit of the
+//! conserved quantities through its neighbours, limited to the range of the fitted values; linear fields are
+//! transferred exactly. An inserted particle takes its volume from its neighbours in proportion to the weights of its
+//! fit, and a removed particle leaves its volume to them. The conservation error, V (fit − U) for each removed
+//! particle, is recorded.
 //!
-//! *Where it came from.* The course of a new particle is a fit of first degree of the courses of those around it, and its
-//! state some steps ago is its present one less the same fit of their changes: U(t − Δt) at x − w Δt, so that a linear field
-//! at rest stays one for a difference formula of any number of times.
+//! *History.* The velocity of a new particle is a linear fit of the velocities of its neighbours. Its state some steps
+//! ago is its present
+//! state minus the same fit of their changes: U(t − Δt) at x − w Δt, so that a linear field at rest is preserved by a
+//! difference formula of any number of time levels.
 use super::fluid::{Fluid, Work};
 use crate::cloud::travel::{NEW, Recloud};
 use crate::cloud::{Cloud, CloudError};
@@ -15,32 +17,32 @@ use crate::math::Vector;
 use crate::math::least_squares::Fit;
 use crate::physics::{Conserved, n_variables};
 
-/// Sum of absolute weights above which a fit of a state is replaced by one of lower degree.
+/// Sum of the absolute weights above which a fit is replaced by one of lower degree.
 const LARGEST_AMPLIFICATION: f64 = 3.0;
-/// Rows that a fit of second degree must have beyond its coefficients.
+/// Number of rows that a quadratic fit must have in excess of its coefficients.
 const SPARE_ROWS: usize = 2;
-/// Part of the range of the values a state is fitted to by which it may lie outside of it: beside a smooth extremum, a
-/// parabola passes the nearest values by an eighth of the range over three spacings.
+/// Fraction of the range of the fitted values by which the result may exceed it: next to a smooth extremum, a parabola
+/// exceeds the nearest values by an eighth of the range over three spacings.
 const MARGIN: f64 = 0.3;
 
-/// What re-clouding has done so far.
+/// Record of all rebuilds of the cloud.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct RemapLedger {
-    /// Times the cloud was built anew.
+    /// Number of rebuilds.
     pub renewals: u32,
-    /// Particles inserted.
+    /// Number of inserted particles.
     pub inserted: u64,
-    /// Particles removed.
+    /// Number of removed particles.
     pub removed: u64,
-    /// What that took from the totals of the conserved quantities.
+    /// Amount by which these rebuilds reduced the total of each conserved quantity.
     pub lost: Vec<f64>,
-    /// The same without regard to sign.
+    /// Sum of the absolute values of these amounts.
     pub exchanged: Vec<f64>,
-    /// Largest number of rows of first order in a cloud.
+    /// Largest number of first-order rows in a cloud.
     pub first_order: u32,
 }
 
-/// The state on a renewed cloud.
+/// Data for the transfer of the state to a rebuilt cloud.
 pub(super) struct Transfer<'a, const D: usize> {
     pub(super) fluid: &'a Fluid<D>,
     pub(super) old: &'a Cloud<D>,
@@ -49,14 +51,14 @@ pub(super) struct Transfer<'a, const D: usize> {
     pub(super) before: &'a [f64],
 }
 
-/// What a particle takes over from one that was there before: its index, the image it is seen as, its weight.
+/// Contribution of a particle of the previous cloud to a new one: its index, its image, and the weight.
 pub(super) struct Share {
     from: usize,
     transform: Option<u8>,
     weight: f64,
 }
 
-/// A place and a state nearby.
+/// Position and state of a nearby particle.
 type Sample<const D: usize> = (Vector<D>, Conserved<D>);
 
 impl<const D: usize> Transfer<'_, D> {
@@ -82,7 +84,7 @@ impl<const D: usize> Transfer<'_, D> {
         Ok(u)
     }
 
-    /// For each new particle, in order, what it takes of where others came from: a fit of first degree.
+    /// For each new particle, in order, the contributions of previous particles by a linear fit.
     pub(super) fn lines(&self) -> Vec<Vec<Share>> {
         let cloud = &self.recloud.cloud;
         let share = |j: usize| {
@@ -105,7 +107,7 @@ impl<const D: usize> Transfer<'_, D> {
         (0..cloud.n_fluid).filter(|i| self.recloud.from[*i] == NEW).map(line).collect()
     }
 
-    /// Vectors of the fluid particles; none of none.
+    /// Vectors of the fluid particles on the rebuilt cloud; empty when there were none.
     pub(super) fn directions(&self, before: &[Vector<D>], lines: &[Vec<Share>]) -> Vec<Vector<D>> {
         let transforms = &self.recloud.cloud.transforms;
         let seen =
@@ -122,8 +124,8 @@ impl<const D: usize> Transfer<'_, D> {
         if before.is_empty() { Vec::new() } else { self.recloud.from.iter().map(&mut of).collect() }
     }
 
-    /// A state of steps ago, known as `then` on the cloud before, on the renewed one, where the state now is `now`: new
-    /// particles changed as those around them did. None of none.
+    /// A state of previous time levels, `then` on the previous cloud, transferred to the rebuilt one, where the present
+    /// state is `now`: new particles changed as their neighbours did. Empty when there was none.
     pub(super) fn past(&self, then: &[f64], now: &[f64], lines: &[Vec<Share>]) -> Vec<f64> {
         let n = n_variables(D);
         let load = |u: &[f64], k: usize| Conserved::<D>::load(&u[k * n..]);
@@ -148,7 +150,7 @@ impl<const D: usize> Transfer<'_, D> {
         past
     }
 
-    /// Adds to the account of what was done.
+    /// Records this rebuild.
     fn count(&self, inserted: u64, ledger: &mut RemapLedger) {
         let n = n_variables(D);
         ledger.renewals += 1;
@@ -170,14 +172,14 @@ impl<const D: usize> Transfer<'_, D> {
         }
     }
 
-    /// Neighbours of a new particle, and theirs, that were there before.
+    /// Neighbours of a new particle, and their neighbours, that existed in the previous cloud.
     fn around_new(&self, i: usize) -> Vec<Sample<D>> {
         let cloud = &self.recloud.cloud;
         let sample = |j: u32| Some((cloud.x[j as usize] - cloud.x[i], self.known(j as usize)?));
         self.near(i).into_iter().filter_map(sample).collect()
     }
 
-    /// Neighbours of particle `i` of the new cloud, and theirs.
+    /// Neighbours of particle `i` of the rebuilt cloud, and their neighbours.
     fn near(&self, i: usize) -> Vec<u32> {
         let cloud = &self.recloud.cloud;
         let own = cloud.neighbours.of(i);
@@ -188,7 +190,7 @@ impl<const D: usize> Transfer<'_, D> {
         list
     }
 
-    /// State of particle `j` of the new cloud, if it was there before.
+    /// State of particle `j` of the rebuilt cloud, if it existed before.
     fn known(&self, j: usize) -> Option<Conserved<D>> {
         let (cloud, old) = (&self.recloud.cloud, self.old);
         let source = cloud.source(j).index;
@@ -204,7 +206,7 @@ impl<const D: usize> Transfer<'_, D> {
         Some(self.fluid.gas.conserved(&q))
     }
 
-    /// Neighbours of a removed particle that stay.
+    /// Remaining neighbours of a removed particle.
     fn around_removed(&self, i: usize) -> Vec<Sample<D>> {
         let stays =
             |j: &&u32| self.recloud.removed.binary_search(&(self.old.source(**j as usize).index as u32)).is_err();
@@ -216,7 +218,7 @@ impl<const D: usize> Transfer<'_, D> {
         .collect()
     }
 
-    /// Value at the middle of the samples; `None` without any.
+    /// Fitted value at the centre of the samples; `None` without samples.
     fn fitted(&self, samples: &[Sample<D>], h: f64) -> Option<Conserved<D>> {
         let quadratic = 1 + D + D * (D + 1) / 2;
         let x: Vec<Vector<D>> = samples.iter().map(|s| s.0).collect();
@@ -228,7 +230,7 @@ impl<const D: usize> Transfer<'_, D> {
             if !weigh(&x, h, degree, &mut weights) {
                 continue;
             }
-            // differences from the nearest sample keep a uniform state to the last bit
+            // differences from the nearest sample preserve a uniform state to the last bit
             let nearest = samples.iter().min_by(|a, b| a.0.norm_squared().total_cmp(&b.0.norm_squared()))?.1;
             let fit = samples.iter().zip(&weights).fold(nearest, |s, ((_, u), w)| s.plus(*w, &u.plus(-1.0, &nearest)));
             if degree == 1 || self.is_within(&fit, samples) {
@@ -238,7 +240,7 @@ impl<const D: usize> Transfer<'_, D> {
         None
     }
 
-    /// True when density and pressure lie within those of the samples, or nearly so.
+    /// True when density and pressure lie within the range of the samples plus a margin.
     fn is_within(&self, u: &Conserved<D>, samples: &[Sample<D>]) -> bool {
         let gas = &self.fluid.gas;
         let of = |u: &Conserved<D>| {
@@ -257,8 +259,8 @@ impl<const D: usize> Transfer<'_, D> {
     }
 }
 
-/// Weights of the value in the middle of samples at `places` from there, by a fit with `degree` coefficients; false if they
-/// amplify too much, which a mean never does.
+/// Weights for the value at the centre of samples at the relative positions `places`, by a fit with `degree`
+/// coefficients; false when the sum of absolute weights is too large, which cannot happen for a mean value.
 fn weigh<const D: usize>(places: &[Vector<D>], h: f64, degree: usize, weights: &mut Vec<f64>) -> bool {
     let mut fit = Fit::default();
     fit.reset(degree);

@@ -1,10 +1,10 @@
-//! Laws of solids, at one place: stress from the deformation gradient F and what was before.
+//! Constitutive laws of solids, evaluated pointwise: stress from the deformation gradient F and the history.
 //!
-//! [`Material::respond`] maps F at the end of a step, the history and the duration of the step to the first stress of Piola
-//! and Kirchhoff P (force per reference area: `p[a][b]` is the component a of the force on the reference face b), the energy
-//! stored and the energy lost. It is written once over [`Scalar`]: with [`Dual`] numbers the same lines give the tangent
-//! dP = (∂P/∂F):dF of the whole step, return to the yield surface included; [`tangent_product`] does that. First derivatives
-//! are exact; second derivatives of laws with a history are not.
+//! [`Material::respond`] maps F at the end of a step, the history variables and the duration of the step to the first
+//! Piola-Kirchhoff stress P (force per undeformed area: `p[a][b]` is component a of the force on the undeformed face
+//! b), the stored energy and the dissipated energy. It is generic in [`Scalar`]: with [`Dual`] numbers, the same code
+//! yields the tangent dP = (∂P/∂F):dF of the whole step, including the return to the yield surface
+//! ([`tangent_product`]). First derivatives are exact; second derivatives of laws with a history are not.
 //!
 //! | law | history | source |
 //! |---|---|---|
@@ -45,95 +45,98 @@ pub use plane_stress::plane_stress;
 pub use tensor::Tensor;
 pub use viscoelastic::{Branch, Prony};
 
-/// Most numbers of history that any law keeps.
+/// Greatest number of history variables of a law.
 pub const MOST_HISTORY: usize = viscoelastic::MOST_LENGTH;
-/// Temperature of a room, K.
+/// Room temperature [K].
 pub const ROOM_TEMPERATURE: f64 = 293.15;
 
-/// How stress follows from deformation.
+/// Constitutive law.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Law {
-    /// Linear elasticity, for small strains and rotations.
+    /// Linear elasticity for small strains and rotations.
     Linear,
-    /// Elasticity of Saint-Venant and Kirchhoff, for small strains and any rotation.
+    /// Saint-Venant-Kirchhoff elasticity for small strains and any rotation.
     SaintVenantKirchhoff,
-    /// Compressible neo-Hookean elasticity, for large strains.
+    /// Compressible neo-Hookean elasticity for large strains.
     NeoHookean,
-    /// Saint-Venant and Kirchhoff's elasticity with three planes of symmetry; the moduli are means.
+    /// Orthotropic Saint-Venant-Kirchhoff elasticity; the moduli of the material are mean values.
     Orthotropic(Orthotropic),
-    /// Rates of stress from rates of deformation.
+    /// Hypoelasticity: the stress rate is a function of the strain rate.
     Hypoelastic,
-    /// Metals: neo-Hookean up to von Mises' yield condition.
+    /// Metal plasticity: neo-Hookean up to the von Mises yield condition.
     Plastic(Plasticity),
-    /// Neo-Hookean with a resistance to shear that relaxes; the moduli are the instantaneous ones.
+    /// Viscoelasticity: neo-Hookean with relaxation of the shear response; the moduli are the instantaneous ones.
     Viscoelastic(Prony),
 }
 
-/// What plastic work does to the temperature.
+/// Heating by plastic work.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Thermal {
-    /// Heat capacity per mass, J/(kg K).
+    /// Specific heat capacity [J/(kg K)].
     pub heat_capacity: f64,
-    /// Part of plastic work that becomes heat (Taylor & Quinney 1934); 0 keeps the temperature.
+    /// Fraction of the plastic work that is converted to heat (Taylor and Quinney 1934); with 0 the temperature is
+    /// constant.
     pub heated_fraction: f64,
-    /// Temperature at the start, K.
+    /// Initial temperature [K].
     pub start: f64,
 }
 
-/// A solid.
+/// A solid material. Values are in SI units, or in any consistent units.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Material {
-    /// Mass per reference volume.
+    /// Mass per undeformed volume.
     pub density: f64,
     /// Elastic moduli.
     pub moduli: Moduli,
-    /// How stress follows from deformation.
+    /// Constitutive law.
     pub law: Law,
-    /// What plastic work does to the temperature.
+    /// Heating by plastic work.
     pub thermal: Thermal,
-    /// Von Mises stress up to which an elastic law stands for a metal that yields there; none where it holds anywhere.
+    /// Von Mises stress up to which an elastic law is valid for a metal that yields there; `None` where there is no
+    /// such limit.
     pub elastic_limit: Option<f64>,
 }
 
-/// What a solid answers to a step.
+/// Response of a material to a step.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Response<S = f64> {
-    /// First stress of Piola and Kirchhoff P at the end of the step.
+    /// First Piola-Kirchhoff stress P at the end of the step.
     pub stress: Tensor<S>,
-    /// Energy stored per reference volume at the end of the step.
+    /// Stored energy per undeformed volume at the end of the step.
     pub stored: S,
-    /// Energy lost per reference volume within the step.
+    /// Dissipated energy per undeformed volume during the step.
     pub dissipated: S,
 }
 
-/// What a law with a history is asked.
+/// Input of a law with history.
 #[derive(Clone, Copy)]
 struct Step<'a, S> {
-    /// F at the end of the step.
+    /// Deformation gradient F at the end of the step.
     gradient: &'a Tensor<S>,
-    /// History before it.
+    /// History variables at the start of the step.
     old: &'a [f64],
-    /// Duration.
+    /// Duration of the step.
     dt: f64,
 }
 
 impl Thermal {
-    /// A room in which plastic work heats nothing.
+    /// Room temperature without heating by plastic work.
     pub const ISOTHERMAL: Self = Self { heat_capacity: 1.0, heated_fraction: 0.0, start: ROOM_TEMPERATURE };
 }
 
 impl Material {
-    /// A solid at room temperature that plastic work does not heat.
+    /// A material at room temperature without heating by plastic work.
     pub const fn new(density: f64, moduli: Moduli, law: Law) -> Self {
         Self { density, moduli, law, thermal: Thermal::ISOTHERMAL, elastic_limit: None }
     }
 
-    /// The same solid with another law.
+    /// The material with another law.
     pub const fn with_law(self, law: Law) -> Self {
         Self { law, ..self }
     }
 
-    /// A metal without its yield: the same below its yield stress, which is kept as the limit. Other solids are as they are.
+    /// The material without plasticity: its elastic law with the yield stress as `elastic_limit`. Other materials are
+    /// unchanged.
     pub fn as_elastic(self) -> Self {
         match self.yield_stress() {
             Some(limit) => Self { law: Law::NeoHookean, elastic_limit: Some(limit), ..self },
@@ -141,7 +144,7 @@ impl Material {
         }
     }
 
-    /// Numbers of history.
+    /// Number of history variables.
     pub fn history_len(&self) -> usize {
         match &self.law {
             Law::Linear | Law::SaintVenantKirchhoff | Law::NeoHookean | Law::Orthotropic(_) => 0,
@@ -151,7 +154,7 @@ impl Material {
         }
     }
 
-    /// Writes the history of the virgin solid.
+    /// Writes the initial history variables.
     pub fn begin(&self, history: &mut [f64]) {
         match &self.law {
             Law::Linear | Law::SaintVenantKirchhoff | Law::NeoHookean | Law::Orthotropic(_) => {}
@@ -161,8 +164,9 @@ impl Material {
         }
     }
 
-    /// Stress and energies at the deformation gradient `f` after a step of length `dt` from the history `old`; writes the new
-    /// history. A `dt` of 0 is an instant: nothing relaxes, overstress does not let yield, rates count as slow.
+    /// Stress and energies at the deformation gradient `f` after a step of duration `dt` from the history `old`; writes
+    /// the new history variables. `dt` = 0 means an instantaneous response: without relaxation, without viscoplastic
+    /// flow, and at a low strain rate.
     pub fn respond<S: Scalar>(&self, f: &Tensor<S>, old: &[f64], dt: f64, new: &mut [S]) -> Response<S> {
         let m = &self.moduli;
         let elastic = |stress, stored| Response { stress, stored, dissipated: S::constant(0.0) };
@@ -178,7 +182,7 @@ impl Material {
         }
     }
 
-    /// Stress at `f` where it depends on `f` alone.
+    /// Stress at `f` for laws without history; `None` for other laws.
     #[inline(always)]
     pub fn elastic_stress<S: Scalar>(&self, f: &Tensor<S>) -> Option<Tensor<S>> {
         match &self.law {
@@ -190,7 +194,7 @@ impl Material {
         }
     }
 
-    /// Energy stored per reference volume at `f` where it depends on `f` alone.
+    /// Stored energy per undeformed volume at `f` for laws without history; `None` for other laws.
     pub fn energy<S: Scalar>(&self, f: &Tensor<S>) -> Option<S> {
         match &self.law {
             Law::Linear => Some(linear_energy(&self.moduli, f)),
@@ -201,17 +205,17 @@ impl Material {
         }
     }
 
-    /// Speed of pressure waves √((K + 4/3 μ)/ρ) of the undeformed solid.
+    /// Speed of pressure waves √((K + 4/3 μ)/ρ) in the undeformed material.
     pub fn pressure_wave_speed(&self) -> f64 {
         (self.moduli.pressure_wave() / self.density).sqrt()
     }
 
-    /// Speed of shear waves √(μ/ρ) of the undeformed solid.
+    /// Speed of shear waves √(μ/ρ) in the undeformed material.
     pub fn shear_wave_speed(&self) -> f64 {
         (self.moduli.shear / self.density).sqrt()
     }
 
-    /// Flow stress of the virgin solid in slow deformation; `None` for laws that never yield.
+    /// Initial yield stress at a low strain rate; `None` for laws without yield.
     pub fn yield_stress(&self) -> Option<f64> {
         match &self.law {
             Law::Plastic(law) => Some(law.hardening.stress(0.0)),
@@ -219,28 +223,28 @@ impl Material {
         }
     }
 
-    /// Equivalent plastic strain in a history; 0 for laws without.
+    /// Equivalent plastic strain in the history variables; 0 for laws without plasticity.
     pub fn plastic_strain(&self, history: &[f64]) -> f64 {
         if matches!(self.law, Law::Plastic(_)) { history[plasticity::STRAIN] } else { 0.0 }
     }
 
-    /// Temperature in a history, K; that of the start for laws without.
+    /// Temperature in the history variables [K]; the initial temperature for laws without heating.
     pub fn temperature(&self, history: &[f64]) -> f64 {
         if matches!(self.law, Law::Plastic(_)) { history[plasticity::TEMPERATURE] } else { self.thermal.start }
     }
 
-    /// Plastic work per reference volume in a history; 0 for laws without.
+    /// Plastic work per undeformed volume in the history variables; 0 for laws without plasticity.
     pub fn plastic_work(&self, history: &[f64]) -> f64 {
         if matches!(self.law, Law::Plastic(_)) { history[plasticity::WORK] } else { 0.0 }
     }
 
-    /// Rise of temperature per plastic work, χ/(ρc).
+    /// Temperature rise per plastic work, χ/(ρc).
     fn heating(&self) -> f64 {
         self.thermal.heated_fraction / (self.density * self.thermal.heat_capacity)
     }
 }
 
-/// Change dP of the stress at the end of a step with the change `df` of F there: the consistent tangent in one direction.
+/// Consistent tangent in one direction: change dP of the stress at the end of a step due to the change `df` of F there.
 pub fn tangent_product(material: &Material, f: &Tensor, df: &Tensor, old: &[f64], dt: f64) -> Tensor {
     let f = tensor::of(|i, j| Dual { value: f[i][j], derivative: df[i][j] });
     let mut scratch = [Dual::constant(0.0); MOST_HISTORY];

@@ -1,38 +1,39 @@
-//! Orthotropic elasticity: three planes of symmetry, as of wood and laminates.
+//! Orthotropic elasticity: three planes of symmetry, as in wood and laminates.
 //!
-//! In axes fixed to the undeformed material, S = C : E between Green's strain and the second Piola-Kirchhoff stress (Saint-Venant and
-//! Kirchhoff's law with nine constants), for small strains and any rotation; P = F S. The constants are those of engineers (Jones 1999,
-//! *Mechanics of Composite Materials*, eq. 2.24): ε₁ = σ₁/E₁ − ν₁₂ σ₂/E₁ − ν₁₃ σ₃/E₁ and so on, γ₁₂ = τ₁₂/G₁₂.
+//! In axes fixed to the undeformed material, S = C : E relates the Green-Lagrange strain to the second Piola-Kirchhoff
+//! stress (Saint-Venant-Kirchhoff law with nine constants), for small strains and any rotation; P = F S. The
+//! engineering constants are defined by (Jones 1999, *Mechanics of Composite Materials*, eq. 2.24) ε₁ = σ₁/E₁ − ν₁₂
+//! σ₂/E₁ − ν₁₃ σ₃/E₁ and so on, γ₁₂ = τ₁₂/G₁₂.
 use super::elastic::{Moduli, green_strain};
 use super::tensor::{self, Tensor};
 use crate::math::Vector;
 use crate::math::jet::Scalar;
 
-/// An orthotropic solid.
+/// Stiffness of an orthotropic material.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Orthotropic {
-    /// Stiffness of the strains along the axes, symmetric.
+    /// Stiffness matrix of the normal strains along the material axes; symmetric.
     pub normal: [[f64; 3]; 3],
-    /// G₁₂, G₂₃ and G₃₁.
+    /// Shear moduli G₁₂, G₂₃ and G₃₁.
     pub shear: [f64; 3],
-    /// Unit vectors of the material's axes.
+    /// Unit vectors of the material axes.
     pub axes: [[f64; 3]; 3],
 }
 
-/// Constants of engineers.
+/// Engineering constants of an orthotropic material.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Constants {
-    /// E₁, E₂ and E₃.
+    /// Young's moduli E₁, E₂ and E₃.
     pub young: [f64; 3],
-    /// ν₁₂, ν₁₃ and ν₂₃.
+    /// Poisson's ratios ν₁₂, ν₁₃ and ν₂₃.
     pub poisson: [f64; 3],
-    /// G₁₂, G₁₃ and G₂₃.
+    /// Shear moduli G₁₂, G₁₃ and G₂₃.
     pub shear: [f64; 3],
 }
 
 impl Orthotropic {
-    /// The solid with these constants, whose first axis is along `first` and whose third is as near to `third` as it can be; `None`
-    /// where some strain would store no energy, or the directions are one.
+    /// The material with these constants, whose first axis is along `first` and whose third axis is as close as
+    /// possible to `third`; `None` when the stiffness is not positive definite or the directions are parallel.
     pub fn new(constants: &Constants, first: [f64; 3], third: [f64; 3]) -> Option<Self> {
         let Constants { young: [e1, e2, e3], poisson: [n12, n13, n23], shear: [g12, g13, g23] } = *constants;
         let s = [[1.0 / e1, -n12 / e1, -n13 / e1], [-n12 / e1, 1.0 / e2, -n23 / e2], [-n13 / e1, -n23 / e2, 1.0 / e3]];
@@ -57,7 +58,7 @@ impl Orthotropic {
         })
     }
 
-    /// Isotropic moduli of the size of these: of waves and of what stabilises.
+    /// Isotropic moduli of similar magnitude, for wave speeds and stabilisation.
     pub fn mean(&self) -> Moduli {
         let bulk = self.normal.iter().flatten().sum::<f64>() / 9.0;
         Moduli { shear: self.shear.iter().sum::<f64>() / 3.0, bulk }
@@ -73,13 +74,13 @@ impl Orthotropic {
         self.turned(&stress, |i, a| self.axes[a][i])
     }
 
-    /// P = F S at the deformation gradient `f`.
+    /// First Piola-Kirchhoff stress P = F S at the deformation gradient `f`.
     #[inline(always)]
     pub fn stress<S: Scalar>(&self, f: &Tensor<S>) -> Tensor<S> {
         tensor::product(f, &self.second(&green_strain(f)))
     }
 
-    /// Energy ½ E : C : E per reference volume.
+    /// Stored energy ½ E : C : E per undeformed volume.
     #[inline(always)]
     pub fn energy<S: Scalar>(&self, f: &Tensor<S>) -> S {
         let strain = green_strain(f);
@@ -94,7 +95,7 @@ impl Orthotropic {
         }
     }
 
-    /// q a qᵀ.
+    /// The product q a qᵀ.
     #[inline(always)]
     fn turned<S: Scalar>(&self, a: &Tensor<S>, q: impl Fn(usize, usize) -> f64) -> Tensor<S> {
         let half = tensor::of(|i, j| a[0][j] * q(i, 0) + a[1][j] * q(i, 1) + a[2][j] * q(i, 2));
