@@ -1,28 +1,28 @@
 //! The ideal gas and the compressible Euler equations.
 //!
-//! ∂ρ/∂t + ∇·(ρv) = 0, ∂(ρv)/∂t + ∇·(ρvv + pI) = 0, ∂(ρE)/∂t + ∇·((ρE + p)v) = 0 with p = (γ−1)ρe, E = e + v²/2: the paper's
-//! equations (1)-(3) and (6) written for conserved quantities, so that shocks stand where they should.
+//! ∂ρ/∂t + ∇·(ρv) = 0, ∂(ρv)/∂t + ∇·(ρvv + pI) = 0, ∂(ρE)/∂t + ∇·((ρE + p)v) = 0 with p = (γ−1)ρe, E = e + v²/2:
+//! equations (1)-(3) and (6) in conservative form, which gives shocks the correct speed.
 use crate::math::Vector;
 use crate::math::jet::Scalar;
 
-/// Density, momentum and total energy per volume: Q of eq. (17).
+/// Conserved state: density, momentum and total energy per volume; Q of eq. (17).
 #[doc(alias = "eq17")]
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[repr(C)]
 pub struct Conserved<const D: usize, S = f64> {
-    /// Mass per volume.
+    /// Density ρ.
     pub density: S,
-    /// Momentum per volume.
+    /// Momentum per volume ρv.
     pub momentum: Vector<D, S>,
-    /// Total energy per volume.
+    /// Total energy per volume ρE.
     pub energy: S,
 }
 
-/// Density, velocity and pressure.
+/// Primitive state: density, velocity and pressure.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[repr(C)]
 pub struct Primitive<const D: usize, S = f64> {
-    /// Mass per volume.
+    /// Density ρ.
     pub density: S,
     /// Velocity.
     pub velocity: Vector<D, S>,
@@ -38,22 +38,22 @@ pub struct Gas {
 }
 
 impl<const D: usize> Conserved<D> {
-    /// All zero.
+    /// The zero state.
     pub const ZERO: Self = Self { density: 0.0, momentum: Vector::ZERO, energy: 0.0 };
 
-    /// Reads one particle from a flat slice of `D` + 2 numbers.
+    /// Reads the state of one particle from a slice of `D` + 2 numbers.
     #[inline(always)]
     pub fn load(row: &[f64]) -> Self {
         Self { density: row[0], momentum: Vector::from_fn(|d| row[1 + d]), energy: row[D + 1] }
     }
 
-    /// Reads particle `i` of all of them.
+    /// Reads the state of particle `i` from the state vector of all particles.
     #[inline(always)]
     pub fn of_row(rows: &[f64], i: usize) -> Self {
         Self::load(&rows[i * super::n_variables(D)..])
     }
 
-    /// Writes one particle to a flat slice.
+    /// Writes the state to a slice of `D` + 2 numbers.
     #[inline(always)]
     pub fn store(&self, row: &mut [f64]) {
         row[0] = self.density;
@@ -61,7 +61,7 @@ impl<const D: usize> Conserved<D> {
         row[D + 1] = self.energy;
     }
 
-    /// Adds it to one particle in a flat slice.
+    /// Adds the state to a slice of `D` + 2 numbers.
     #[inline(always)]
     pub fn add_to(&self, row: &mut [f64]) {
         row[0] += self.density;
@@ -73,20 +73,20 @@ impl<const D: usize> Conserved<D> {
 }
 
 impl<const D: usize, S: Scalar> Conserved<D, S> {
-    /// All zero.
+    /// The zero state.
     #[inline(always)]
     pub fn zero() -> Self {
         let zero = S::constant(0.0);
         Self { density: zero, momentum: Vector::zero(), energy: zero }
     }
 
-    /// Constants.
+    /// Converts a state to the scalar type `S`, with zero derivatives.
     #[inline(always)]
     pub fn constant(c: &Conserved<D>) -> Self {
         Self { density: S::constant(c.density), momentum: Vector::constant(&c.momentum), energy: S::constant(c.energy) }
     }
 
-    /// self + s·other.
+    /// The sum self + s·other.
     #[inline(always)]
     pub fn plus(&self, s: S, o: &Self) -> Self {
         Self {
@@ -96,13 +96,13 @@ impl<const D: usize, S: Scalar> Conserved<D, S> {
         }
     }
 
-    /// self − other.
+    /// The difference self − other.
     #[inline(always)]
     pub fn minus(&self, o: &Self) -> Self {
         self.plus(S::constant(-1.0), o)
     }
 
-    /// s·self.
+    /// The product s·self.
     #[inline(always)]
     pub fn times(&self, s: S) -> Self {
         Self { density: self.density * s, momentum: self.momentum * s, energy: self.energy * s }
@@ -110,7 +110,7 @@ impl<const D: usize, S: Scalar> Conserved<D, S> {
 }
 
 impl<const D: usize, S: Scalar> Primitive<D, S> {
-    /// The state f(component) for each of density, velocity and pressure of two others.
+    /// Applies f to each component of two states.
     #[inline(always)]
     pub fn zip(a: &Self, b: &Self, f: impl Fn(S, S) -> S) -> Self {
         Self {
@@ -120,13 +120,13 @@ impl<const D: usize, S: Scalar> Primitive<D, S> {
         }
     }
 
-    /// Times a number.
+    /// The product s·self.
     #[inline(always)]
     pub fn times(&self, s: S) -> Self {
         Self { density: self.density * s, velocity: self.velocity * s, pressure: self.pressure * s }
     }
 
-    /// self − other.
+    /// The difference self − other.
     #[inline(always)]
     pub fn minus(&self, o: &Self) -> Self {
         Self {
@@ -136,7 +136,7 @@ impl<const D: usize, S: Scalar> Primitive<D, S> {
         }
     }
 
-    /// self + s·other.
+    /// The sum self + s·other.
     #[inline(always)]
     pub fn plus(&self, s: S, o: &Self) -> Self {
         Self {
@@ -146,7 +146,7 @@ impl<const D: usize, S: Scalar> Primitive<D, S> {
         }
     }
 
-    /// A state of constants.
+    /// Converts a state to the scalar type `S`, with zero derivatives.
     #[inline(always)]
     pub fn constant(q: &Primitive<D>) -> Self {
         Self {
@@ -156,7 +156,7 @@ impl<const D: usize, S: Scalar> Primitive<D, S> {
         }
     }
 
-    /// The state seen by an observer who moves with `w`.
+    /// The state in a frame that moves with the velocity `w`.
     #[inline(always)]
     pub fn seen_from(&self, w: &Vector<D, S>) -> Self {
         Self { velocity: self.velocity - *w, ..*self }
@@ -164,7 +164,7 @@ impl<const D: usize, S: Scalar> Primitive<D, S> {
 }
 
 impl<const D: usize, S: Scalar> Primitive<D, S> {
-    /// True when density and pressure are positive and nothing is NaN or infinite.
+    /// True when density and pressure are positive and all numbers are finite.
     pub fn is_physical(&self) -> bool {
         let (density, pressure) = (self.density.value(), self.pressure.value());
         density > 0.0 && pressure > 0.0 && self.velocity.value().is_finite() && (density + pressure).is_finite()
@@ -172,7 +172,7 @@ impl<const D: usize, S: Scalar> Primitive<D, S> {
 }
 
 impl Gas {
-    /// Density, velocity and pressure of a conserved state — p = (γ−1)ρe, eq. (6).
+    /// Primitive state of a conserved state; p = (γ−1)ρe, eq. (6).
     #[doc(alias = "eq6")]
     #[inline(always)]
     pub fn primitive<const D: usize, S: Scalar>(&self, u: &Conserved<D, S>) -> Primitive<D, S> {
@@ -181,13 +181,13 @@ impl Gas {
         Primitive { density: u.density, velocity, pressure }
     }
 
-    /// Conserved state of density, velocity and pressure.
+    /// Conserved state of a primitive state.
     #[inline(always)]
     pub fn conserved<const D: usize, S: Scalar>(&self, q: &Primitive<D, S>) -> Conserved<D, S> {
         Conserved { density: q.density, momentum: q.velocity * q.density, energy: self.energy(q) }
     }
 
-    /// Total energy per volume.
+    /// Total energy per volume ρE.
     #[inline(always)]
     pub fn energy<const D: usize, S: Scalar>(&self, q: &Primitive<D, S>) -> S {
         q.pressure * (1.0 / (self.gamma - 1.0)) + q.density * 0.5 * q.velocity.norm_squared()
@@ -199,7 +199,8 @@ impl Gas {
         (q.pressure * self.gamma / q.density).sqrt()
     }
 
-    /// Flux F(q)·n of mass, momentum and energy across the area vector n — eqs (1)-(3) without stress and heat.
+    /// Flux F(q)·n of mass, momentum and energy across the area vector n; eqs (1)-(3) without viscous stress and heat
+    /// flux.
     #[doc(alias = "eq1")]
     #[doc(alias = "eq2")]
     #[doc(alias = "eq3")]
@@ -225,7 +226,7 @@ impl Gas {
         q.pressure * (self.gamma / (self.gamma - 1.0)) / q.density + q.velocity.norm_squared() * 0.5
     }
 
-    /// Total pressure p (1 + (γ−1)/2 M²)^(γ/(γ−1)) of gas that is brought to rest without loss.
+    /// Total pressure p (1 + (γ−1)/2 M²)^(γ/(γ−1)), which results from isentropic deceleration to rest.
     pub fn total_pressure<const D: usize>(&self, q: &Primitive<D>) -> f64 {
         let mach_squared = q.velocity.norm_squared() / self.sound_speed(q).powi(2);
         q.pressure * (1.0 + 0.5 * (self.gamma - 1.0) * mach_squared).powf(self.gamma / (self.gamma - 1.0))

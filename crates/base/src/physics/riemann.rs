@@ -1,19 +1,19 @@
-//! Upwind fluxes between two states across a unit normal.
+//! Upwind fluxes between two states across a unit normal (approximate Riemann solvers).
 //!
-//! All are consistent, F(q, q, n) = F(q)·n, and conservative, F(a, b, n) = −F(b, a, −n).
+//! All fluxes are consistent, F(q, q, n) = F(q)·n, and conservative, F(a, b, n) = −F(b, a, −n).
 use super::gas::{Conserved, Gas, Primitive};
 use crate::math::Vector;
 use crate::math::jet::Scalar;
 
-/// Fraction of the sound speed below which Roe's eigenvalues are rounded off (Harten 1983), a smooth entropy fix.
+/// Fraction of the sound speed below which Roe's eigenvalues are smoothed (entropy fix, Harten 1983).
 const ENTROPY_FIX: f64 = 0.1;
-/// Fraction of the sound speed over which the least and the greatest of several wave speeds pass into one another.
+/// Fraction of the sound speed over which the minimum and the maximum of several wave speeds are smoothed.
 const PASSING: f64 = 1.0;
 
 /// A numerical flux across a unit normal.
 pub trait UpwindFlux<const D: usize>: Copy + Sync {
-    /// Flux from `l` to `r`. Choices that depend on the states are between numbers, not between ways through the code, so that it
-    /// can be computed for many edges at once.
+    /// Flux from `l` to `r` per unit area. Implementations select values instead of branching on the states, so that
+    /// the fluxes of many edges can be computed by vector instructions.
     fn across<S: Scalar>(
         self,
         gas: &Gas,
@@ -23,17 +23,17 @@ pub trait UpwindFlux<const D: usize>: Copy + Sync {
     ) -> Conserved<D, S>;
 }
 
-/// Averages of two states by the roots of their densities (Roe 1981, J. Comput. Phys. 43).
+/// Averages of two states, weighted by the square roots of their densities (Roe 1981, J. Comput. Phys. 43).
 struct RoeAverage<const D: usize, S> {
     density: S,
     velocity: Vector<D, S>,
     enthalpy: S,
-    /// Square of the sound speed, which two states of very different enthalpy may leave below zero.
+    /// Squared sound speed, which may be negative for two states of very different enthalpy.
     square: S,
 }
 
 impl<const D: usize, S: Scalar> RoeAverage<D, S> {
-    /// The averages of two states with these total enthalpies.
+    /// Roe averages of two states with these total enthalpies.
     #[inline(always)]
     fn of(gas: &Gas, [l, r]: [&Primitive<D, S>; 2], [hl, hr]: [S; 2]) -> Self {
         let (wl, wr) = (l.density.sqrt(), r.density.sqrt());
@@ -67,7 +67,8 @@ impl<const D: usize> UpwindFlux<D> for Hllc {
         let sr = (ur + (tr * gas.gamma).sqrt()).max(un + c);
         let (ml, mr) = (l.density * (sl - ul), r.density * (sr - ur));
         let star = (r.pressure - l.pressure + ml * ul - mr * ur) / (ml - mr);
-        // F + S (U* − U) on the side of the contact where the area lies; S = 0 where that side's own wave has passed it
+        // F + S (U* − U) on the side of the contact in which the area lies; S = 0 where the outer wave of this side has
+        // passed the area
         let left = star.value() >= 0.0;
         let pick = |a: S, b: S| if left { a } else { b };
         let q = Primitive::zip(l, r, pick);
@@ -104,13 +105,15 @@ impl<const D: usize> UpwindFlux<D> for Rusanov {
     }
 }
 
-/// HLL flux (Harten, Lax and van Leer 1983) with the wave speeds of Einfeldt (1988): one mean state between the outer waves.
+/// HLL flux (Harten, Lax and van Leer 1983) with the wave speeds of Einfeldt (1988): a single mean state between the
+/// outer waves.
 ///
-/// Where a speed takes over from another is rounded off, over a range as wide as the sound speed: Newton's method converges through
-/// strong shocks, and those between one and two times the speed of sound are damped nearly as much as by Rusanov's flux. Faster
-/// flow is taken from upstream alone, so that a strong shock which crosses rows of particles takes nothing from one row to the next.
-/// What is spread of the energy is ρH (Jameson 1995, Int. J. Comput. Fluid Dyn. 5): where the total enthalpy is the same everywhere
-/// it stays so within a captured shock, and what leaves such a shock sideways takes its share of energy along and no less.
+/// The switches between wave speeds are smoothed over a range of one sound speed. Newton's method therefore converges
+/// through strong shocks, and shocks between one and two times the sound speed are damped nearly as much as by
+/// Rusanov's flux. Faster flow is purely upwind, so that a strong shock across rows of particles does not transport
+/// anything between the rows. The dissipation of the energy acts on ρH (Jameson 1995, Int. J. Comput. Fluid Dyn. 5): a
+/// uniform total enthalpy remains uniform within a captured shock, and mass that leaves the shock sideways carries its
+/// share of the energy.
 #[derive(Clone, Copy, Debug)]
 pub struct Hlle;
 impl<const D: usize> UpwindFlux<D> for Hlle {
@@ -138,7 +141,7 @@ impl<const D: usize> UpwindFlux<D> for Hlle {
     }
 }
 
-/// The mean of the fluxes on both sides: what the others add their dissipation to.
+/// Central flux: the mean of the fluxes on both sides, without dissipation.
 #[derive(Clone, Copy, Debug)]
 pub struct Central;
 impl<const D: usize> UpwindFlux<D> for Central {
@@ -187,7 +190,7 @@ impl<const D: usize> UpwindFlux<D> for Roe {
     }
 }
 
-/// |x| rounded to a parabola below `width`.
+/// Smooth approximation of |x|, a parabola below `width`.
 #[inline(always)]
 pub fn rounded<S: Scalar>(x: S, width: S) -> S {
     if x.value() < width.value() { (x * x / width + width) * 0.5 } else { x }
@@ -221,7 +224,7 @@ impl<const D: usize> UpwindFlux<D> for AusmPlusUp {
     }
 }
 
-/// Split Mach number of fourth degree, β = 1/8; `sign` is +1 for the left state.
+/// Split Mach number of degree 4 with β = 1/8; `sign` is +1 for the left state and −1 for the right one.
 #[inline(always)]
 fn mach_split<S: Scalar>(m: S, sign: f64) -> S {
     if m.value().abs() >= 1.0 {
@@ -231,7 +234,7 @@ fn mach_split<S: Scalar>(m: S, sign: f64) -> S {
     same * 0.25 * sign * (other * (2.0 * 0.25) + 1.0)
 }
 
-/// Split pressure of fifth degree, α = 3/16.
+/// Split pressure of degree 5 with α = 3/16; `sign` is +1 for the left state and −1 for the right one.
 #[inline(always)]
 fn pressure_split<S: Scalar>(m: S, sign: f64) -> S {
     if m.value().abs() >= 1.0 {

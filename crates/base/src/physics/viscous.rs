@@ -12,32 +12,32 @@ use crate::math::jet::Scalar;
 /// Rows ∂v_i/∂x of the velocity gradient, or any tensor.
 pub type Tensor<const D: usize, S = f64> = [Vector<D, S>; D];
 
-/// Viscosity and heat conduction.
+/// Viscosity and heat conduction of a Newtonian gas, in units of the solver.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Newtonian {
-    /// Dynamic viscosity of the free stream over its density, its sound speed and the unit of length.
+    /// Dynamic viscosity of the free stream, divided by its density, its sound speed and the unit of length.
     pub viscosity: f64,
-    /// S/T∞ of Sutherland's law; `None`: constant viscosity.
+    /// Constant S/T∞ of Sutherland's law; `None`: constant viscosity.
     pub sutherland: Option<f64>,
     /// Prandtl number μ c_p/λ.
     pub prandtl: f64,
 }
 
-/// What viscous fluxes at one place follow from.
+/// Velocity, temperature and their gradients at one point, from which viscous fluxes follow.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Slopes<const D: usize, S = f64> {
     /// Velocity.
     pub velocity: Vector<D, S>,
     /// Temperature θ = γp/ρ.
     pub temperature: S,
-    /// Rows ∂v_i/∂x.
+    /// Velocity gradient, rows ∂v_i/∂x.
     pub velocity_gradient: Tensor<D, S>,
-    /// ∂θ/∂x.
+    /// Temperature gradient ∂θ/∂x.
     pub temperature_gradient: Vector<D, S>,
 }
 
 impl Gas {
-    /// Temperature over that of the free stream, θ = γp/ρ.
+    /// Temperature divided by that of the free stream, θ = γp/ρ.
     #[inline(always)]
     pub fn temperature<const D: usize, S: Scalar>(&self, q: &Primitive<D, S>) -> S {
         q.pressure * self.gamma / q.density
@@ -51,7 +51,7 @@ pub fn strain_rate<const D: usize, S: Scalar>(gradient: &Tensor<D, S>) -> Tensor
     array(|i| Vector::from_fn(|j| (gradient[i][j] + gradient[j][i]) * 0.5))
 }
 
-/// Viscous part of the stress at the viscosity `mu`, τ = 2μ (ε − ⅓ tr ε I); the whole is σ = τ − p I — eq. (5).
+/// Viscous stress τ = 2μ (ε − ⅓ tr ε I) for the viscosity `mu`; the total stress is σ = τ − p I, eq. (5).
 #[doc(alias = "eq5")]
 #[inline(always)]
 pub fn viscous_stress<const D: usize, S: Scalar>(mu: S, gradient: &Tensor<D, S>) -> Tensor<D, S> {
@@ -62,27 +62,27 @@ pub fn viscous_stress<const D: usize, S: Scalar>(mu: S, gradient: &Tensor<D, S>)
 }
 
 impl Newtonian {
-    /// Viscosity at the temperature θ: μ∞ θ^1.5 (1 + S)/(θ + S), or μ∞.
+    /// Viscosity at the temperature θ: μ∞ θ^1.5 (1 + S)/(θ + S), or μ∞ when it is constant.
     #[inline(always)]
     pub fn at<S: Scalar>(&self, temperature: S) -> S {
         let law = |s: f64| temperature * temperature.sqrt() * (1.0 + s) / (temperature + s);
         self.sutherland.map_or(S::constant(1.0), law) * self.viscosity
     }
 
-    /// Conductivity of θ at the viscosity `mu`, μ/((γ − 1) Pr).
+    /// Thermal conductivity with respect to θ for the viscosity `mu`, μ/((γ − 1) Pr).
     #[inline(always)]
     pub fn conductivity<S: Scalar>(&self, gas: &Gas, mu: S) -> S {
         mu / S::constant((gas.gamma - 1.0) * self.prandtl)
     }
 
-    /// Greatest diffusivity at the state `q`, μ/ρ max(4/3, γ/Pr): the rate at which a difference over the distance h decays
-    /// is this over h².
+    /// Greatest diffusivity at the state `q`, μ/ρ max(4/3, γ/Pr); divided by h², it is the decay rate of a difference
+    /// over the distance h.
     #[inline(always)]
     pub fn diffusivity<const D: usize>(&self, gas: &Gas, q: &Primitive<D>) -> f64 {
         self.at(gas.temperature(q)) / q.density * f64::max(4.0 / 3.0, gas.gamma / self.prandtl)
     }
 
-    /// Flux of mass, momentum and energy by stress and heat across the area vector n: (0, τ·n, v·τ·n − q·n).
+    /// Viscous flux of mass, momentum and energy across the area vector n: (0, τ·n, v·τ·n − q·n).
     #[inline(always)]
     pub fn flux<const D: usize, S: Scalar>(&self, gas: &Gas, at: &Slopes<D, S>, n: &Vector<D, S>) -> Conserved<D, S> {
         let mu = self.at(at.temperature);

@@ -1,8 +1,9 @@
-//! Closed parts of one file: those that overlap are united, those inside others are left out.
+//! Closed parts of one file: overlapping parts are united, and parts inside others are removed.
 //!
-//! A part is what is reached across edges with two triangles. Parts that share a volume, or a piece of wall, are clipped at their
-//! intersection and closed ([`super::union`]): the walls bound one volume. No gas reaches a part inside another one that faces the same way; one that
-//! faces the other way is a cavity or the room around a model, which only the user can tell.
+//! A part consists of the triangles that are connected across edges with two triangles. Parts that share a volume, or a
+//! piece of wall, are clipped at their intersection and united ([`super::union`]), so that their walls bound one
+//! volume. A part inside another one with the same orientation is not reached by the gas. A part with the opposite
+//! orientation is a cavity or the room around a model, which only the user can decide.
 use super::GeometryError;
 use super::shell::{Exact, Shell, at, facets, root, unite};
 use super::surface::Surface;
@@ -10,11 +11,12 @@ use super::union::{self, Meeting};
 use crate::math::Bounds;
 use std::collections::BTreeMap;
 
-/// Least volume of a part over its area to the power 3/2: that of a plate a hundred thousand times as long as thick is 4e-6.
+/// Smallest volume of a part relative to its area to the power 3/2; a plate a hundred thousand times as long as thick
+/// has 4e-6.
 const THINNEST: f64 = 1e-9;
-/// Most parts that a note names.
+/// Greatest number of parts that a message names.
 const NAMED: usize = 4;
-/// Name of the solids and groups that have none.
+/// Name of solids and groups without a name.
 pub(super) const UNNAMED: &str = "unnamed";
 
 /// A closed part.
@@ -24,11 +26,12 @@ struct Part {
     name: String,
     /// Its triangles in the shell of the file.
     members: Vec<usize>,
-    /// It was oriented inwards in the file.
+    /// True when it was oriented inward in the file.
     inward: bool,
 }
 
-/// The walls of what the parts of `shell` enclose together; `inward` tells which triangles belonged to parts oriented inwards.
+/// The walls of the volume that the parts of `shell` enclose together; `inward` marks triangles of parts that were
+/// oriented inward.
 pub(super) fn settle(
     file: &str,
     shell: Shell<3>,
@@ -71,7 +74,7 @@ pub(super) fn settle(
     Ok(all)
 }
 
-/// How two parts that meet stand to one another.
+/// Relative position of two parts that intersect.
 fn stand(file: &str, a: &Part, b: &Part) -> Result<Meeting, GeometryError> {
     let hint = "unite the parts before the export";
     let refused = |what: String| GeometryError::refused(file, what, hint);
@@ -85,7 +88,7 @@ fn stand(file: &str, a: &Part, b: &Part) -> Result<Meeting, GeometryError> {
     }
 }
 
-/// The number of the inner of two parts, which is left out; refuses a cavity.
+/// Index of the inner of two parts, which is removed; rejects a cavity.
 fn inside(
     file: &str,
     [inner, outer]: [&Part; 2],
@@ -103,7 +106,7 @@ fn inside(
     Ok(number)
 }
 
-/// Refuses a part that bounds no volume: a sheet folded on itself.
+/// Rejects a part that encloses no volume: a folded sheet.
 fn refuse_sheet(file: &str, part: &Part) -> Result<(), GeometryError> {
     if part.surface.volume() > THINNEST * part.surface.area().powf(1.5) {
         return Ok(());
@@ -112,7 +115,7 @@ fn refuse_sheet(file: &str, part: &Part) -> Result<(), GeometryError> {
     Err(GeometryError::refused(file, what, "give sheets a thickness, or remove them"))
 }
 
-/// Refuses a part that intersects itself.
+/// Rejects a self-intersecting part.
 fn refuse_crossing(file: &str, part: &Part) -> Result<(), GeometryError> {
     let Some((x, [e, f])) = part.surface.intersection() else { return Ok(()) };
     let shell = &part.shell;
@@ -131,7 +134,7 @@ fn meeting(parts: &[Part]) -> Vec<(usize, usize)> {
     pairs.filter(|&(a, b)| parts[a].surface.meets(&parts[b].surface)).collect()
 }
 
-/// The walls of what parts that overlap enclose together.
+/// The walls of the volume that overlapping parts enclose together.
 fn united(file: &str, parts: &[&Part], notes: &mut Vec<String>) -> Result<Shell<3>, GeometryError> {
     let shells: Vec<&Shell<3>> = parts.iter().map(|p| &p.shell).collect();
     let names = listed(parts.iter().map(|p| p.name.as_str()));
@@ -145,7 +148,7 @@ fn united(file: &str, parts: &[&Part], notes: &mut Vec<String>) -> Result<Shell<
     Ok(united.shell)
 }
 
-/// Names in words, at most a few of them.
+/// A list of names, truncated after a few.
 fn listed<'a>(names: impl Iterator<Item = &'a str>) -> String {
     let names: Vec<&str> = names.collect();
     let (last, more) = (names.len().min(NAMED) - 1, names.len().saturating_sub(NAMED));
@@ -175,7 +178,7 @@ fn parts(shell: &Shell<3>, inward: &[bool]) -> Vec<Part> {
     parts
 }
 
-/// The name of a part: that of its solid or group where it has one of its own, else its number and place.
+/// Name of a part: that of its solid or group if it is unique, otherwise its number and position.
 fn name(part: &Shell<3>, number: usize) -> String {
     let first = part.tags.first().filter(|t| part.tags.iter().all(|u| u == *t));
     match first.and_then(|t| part.tag_names.get(usize::from(*t))) {
@@ -188,7 +191,7 @@ fn by_place(part: &Shell<3>, number: usize) -> String {
     format!("part {number} around {}", at(&Bounds::around(&part.vertices).centre()))
 }
 
-/// Some triangles of a shell without normals, and their vertices.
+/// A shell of some triangles and their vertices, without normals.
 fn subset(shell: &Shell<3>, members: &[usize]) -> Shell<3> {
     let elements = members.iter().map(|e| shell.elements[*e]).collect();
     let (vertices, elements) = union::compact(&shell.vertices, elements);
@@ -204,7 +207,7 @@ fn subset(shell: &Shell<3>, members: &[usize]) -> Shell<3> {
     }
 }
 
-/// Two shells as one.
+/// Two shells combined to one.
 fn joined(a: Shell<3>, b: Shell<3>) -> Shell<3> {
     let (first, second) = (a.features(), b.features());
     let mut all = a;

@@ -1,7 +1,8 @@
-//! Circles, ellipses, spheres and boxes, and a writer of STL files.
+//! Circles, ellipses, spheres and boxes, and writers of surface files.
 //!
-//! A circle is a regular polygon and a sphere a subdivided icosahedron (each triangle into four, new vertices moved onto
-//! the sphere); both carry their exact shape, so places and normals on them are exact. Boxes have flat sides and creases.
+//! A circle is a regular polygon, and a sphere a subdivided icosahedron (each triangle is divided into four, and new
+//! vertices are moved onto the sphere). Both have their exact shape attached, so that positions and normals on them are
+//! exact. Boxes have flat sides and creases.
 use super::shell::{Exact, Shell};
 use super::surface::Surface;
 use crate::math::Vector;
@@ -9,13 +10,13 @@ use std::collections::HashMap;
 use std::f64::consts::PI;
 use std::io::{self, Write};
 
-/// Segments of a circle: chords stay within 7e-8 radii of it.
+/// Number of segments of a circle; chords deviate from it by at most 7e-8 radii.
 const SEGMENTS: u32 = 8192;
-/// Subdivisions of the icosahedron: 81 920 triangles within 5e-5 radii of the sphere.
+/// Number of subdivisions of the icosahedron; 81 920 triangles deviate from the sphere by at most 5e-5 radii.
 const SUBDIVISIONS: u32 = 6;
-/// Greatest subdivision of [`icosphere`], 21 million triangles.
+/// Greatest number of subdivisions of [`icosphere`], which gives 21 million triangles.
 const MOST_SUBDIVISIONS: u32 = 10;
-/// Turning angle of the edges of primitives, radians (40°).
+/// Crease angle of primitives [rad] (40°).
 const CREASE: f64 = 40.0 * PI / 180.0;
 
 /// A circle about the origin.
@@ -36,8 +37,8 @@ pub(super) fn circle(radius: f64) -> Shell<2> {
     }
 }
 
-/// An ellipse about the origin with the half axes `half`: points at equal steps of the eccentric angle, so that they gather at its
-/// ends, with their exact normals.
+/// An ellipse about the origin with the semi-axes `half`. Points are at equal steps of the eccentric angle, and hence
+/// dense at the ends, with exact normals.
 pub(super) fn ellipse(half: [f64; 2]) -> Shell<2> {
     let (circle, [a, b]) = (circle(1.0), half);
     Shell {
@@ -53,7 +54,7 @@ pub(super) fn sphere(radius: f64) -> Shell<3> {
     icosphere(radius, SUBDIVISIONS)
 }
 
-/// A sphere about the origin from an icosahedron subdivided `subdivisions` times (at most 10): 20·4ⁿ triangles.
+/// A sphere about the origin from an icosahedron subdivided `subdivisions` times (at most 10), with 20·4ⁿ triangles.
 pub fn icosphere(radius: f64, subdivisions: u32) -> Shell<3> {
     let (mut vertices, mut elements) = icosahedron();
     for _ in 0..subdivisions.min(MOST_SUBDIVISIONS) {
@@ -71,7 +72,7 @@ pub fn icosphere(radius: f64, subdivisions: u32) -> Shell<3> {
     }
 }
 
-/// Unit icosahedron: the corners of three golden rectangles.
+/// The unit icosahedron, from the corners of three golden rectangles.
 fn icosahedron() -> (Vec<Vector<3>>, Vec<[u32; 3]>) {
     let golden = 0.5 * (1.0 + 5.0_f64.sqrt());
     let mut vertices = Vec::new();
@@ -98,7 +99,7 @@ fn icosahedron() -> (Vec<Vector<3>>, Vec<[u32; 3]>) {
     (vertices, elements)
 }
 
-/// Four triangles for each; new vertices lie on the unit sphere.
+/// Divides each triangle into four; new vertices lie on the unit sphere.
 fn subdivide(vertices: &mut Vec<Vector<3>>, elements: &[[u32; 3]]) -> Vec<[u32; 3]> {
     let mut middles: HashMap<(u32, u32), u32> = HashMap::new();
     let mut middle = |a: u32, b: u32| {
@@ -121,7 +122,7 @@ pub(super) fn rectangle(size: [f64; 2]) -> Vec<Vector<2>> {
     vec![Vector([-a, -b]), Vector([a, -b]), Vector([a, b]), Vector([-a, b])]
 }
 
-/// A box centred on the origin; corner number k is on the side of greater coordinates of axis d where bit d of k is set.
+/// A box centred on the origin; corner k lies on the side of greater coordinates of axis d where bit d of k is set.
 pub fn cuboid(size: [f64; 3]) -> Shell<3> {
     let corner = |i: u32| Vector::from_fn(|d| size[d] * if i >> d & 1 == 1 { 0.5 } else { -0.5 });
     let side = |axis: u32| {
@@ -141,7 +142,7 @@ pub fn cuboid(size: [f64; 3]) -> Shell<3> {
     }
 }
 
-/// Writes a surface as a binary STL file (single precision, as the format demands).
+/// Writes a surface as a binary STL file, in single precision as the format prescribes.
 pub fn write_stl(out: &mut impl Write, surface: &Surface<3>) -> io::Result<()> {
     out.write_all(&[0; 80])?;
     out.write_all(&(surface.elements.len() as u32).to_le_bytes())?;
@@ -155,7 +156,7 @@ pub fn write_stl(out: &mut impl Write, surface: &Surface<3>) -> io::Result<()> {
     Ok(())
 }
 
-/// Writes a surface as an OBJ file: all digits, one group for each tag.
+/// Writes a surface as an OBJ file with all digits and one group for each tag.
 pub fn write_obj(out: &mut impl Write, surface: &Surface<3>) -> io::Result<()> {
     for x in &surface.vertices {
         writeln!(out, "v {} {} {}", x[0], x[1], x[2])?;
@@ -172,8 +173,8 @@ pub fn write_obj(out: &mut impl Write, surface: &Surface<3>) -> io::Result<()> {
     Ok(())
 }
 
-/// Writes the outlines of bodies in the plane as coordinates `x y` with all digits, once around each body; the line before the points of
-/// a body is its name.
+/// Writes the outlines of 2-D bodies as coordinates `x y` with all digits, once around each body; the name of the body
+/// precedes its points.
 pub fn write_outlines(out: &mut impl Write, surface: &Surface<2>) -> io::Result<()> {
     for (body, name) in surface.bodies.iter().enumerate() {
         writeln!(out, "{name}")?;

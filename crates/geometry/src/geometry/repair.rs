@@ -1,9 +1,10 @@
-//! From a soup of triangles to a closed, consistently oriented shell.
+//! Repair of a triangle soup to a closed, consistently oriented shell.
 //!
-//! Vertices are welded, degenerate and repeated triangles dropped, needles resolved by splitting the triangle on their
-//! long side, orientation made consistent by a flood across edges with exactly two triangles, each component turned outward by the
-//! sign of its volume, holes closed where that is safe ([`super::holes`]), and parts that overlap united ([`super::parts`]). What cannot be
-//! mended safely is refused with its place: large holes, edges with an odd number of triangles, one-sided surfaces, parts that cross themselves.
+//! Vertices are merged, and degenerate and repeated triangles removed. Needles are resolved by splitting the triangle
+//! on their long side. The orientation is made consistent by a flood fill across edges with exactly two triangles; each
+//! component is oriented outward by the sign of its volume. Holes are closed where this is safe ([`super::holes`]), and
+//! overlapping parts are united ([`super::parts`]). Defects that cannot be repaired safely are rejected with their
+//! position: large holes, edges with an odd number of triangles, one-sided surfaces, and self-intersecting parts.
 use super::mesh::Soup;
 use super::shell::{Facet, Shell, at, facets, runs};
 use super::weld::weld;
@@ -11,13 +12,14 @@ use super::{GeometryError, holes, parts, simplex};
 use crate::math::{Bounds, Vector};
 use std::collections::HashSet;
 
-/// Triangles lower than this fraction of the diagonal are needles.
+/// Height of a triangle, as a fraction of the diagonal, below which it is a needle.
 const NEEDLE: f64 = 1e-9;
-/// Rounds of needle removal; each resolves every needle that does not touch another.
+/// Greatest number of rounds of needle removal; each round resolves all needles that do not touch another one.
 const ROUNDS: usize = 16;
 
-/// Makes a shell of the triangles of `file`, with vertices `within` a distance joined where one is given; what was mended is
-/// appended to `notes`.
+/// Makes a shell of the triangles of `file`; vertices nearer than `within` are merged if it is given. Notes about
+/// repairs are appended to
+/// `notes`. Fails when a defect cannot be repaired safely.
 pub(super) fn shell(
     file: &str,
     soup: &Soup,
@@ -32,7 +34,8 @@ pub(super) fn shell(
     parts::settle(file, shell, &inward, notes)
 }
 
-/// A needle a-b-c with b on the side a-c opens a crack when dropped; instead the triangle beyond a-c is split at b.
+/// Resolves needles. Removing a needle a-b-c with b on the side a-c would open a crack; instead, the triangle beyond
+/// a-c is split at b.
 fn split_needles(file: &str, shell: &mut Shell<3>, notes: &mut Vec<String>) {
     let size = Bounds::around(&shell.vertices).extent().norm();
     let mut resolved = 0;
@@ -54,7 +57,7 @@ fn split_needles(file: &str, shell: &mut Shell<3>, notes: &mut Vec<String>) {
     }
 }
 
-/// Splits the neighbours of needles that touch no other change of this round; gives the needles to drop.
+/// Splits the neighbours of needles that touch no other change of this round; returns the needles to be removed.
 fn split_needles_once(shell: &mut Shell<3>, height: f64) -> HashSet<u32> {
     let needles: Vec<(u32, usize)> =
         (0..shell.elements.len()).filter_map(|e| Some((e as u32, needle_tip(&shell.corners(e), height)?))).collect();
@@ -80,7 +83,7 @@ fn split_needles_once(shell: &mut Shell<3>, height: f64) -> HashSet<u32> {
         first_half[(other.opposite + 1) % 3] = b;
         second_half[(other.opposite + 2) % 3] = b;
         if old.contains(&b) {
-            // Both triangles fold onto the same three vertices: they enclose nothing.
+            // both triangles collapse to the same three vertices and enclose nothing
             dropped.insert(other.element);
         } else {
             shell.elements[other.element as usize] = first_half;
@@ -93,15 +96,15 @@ fn split_needles_once(shell: &mut Shell<3>, height: f64) -> HashSet<u32> {
     dropped
 }
 
-/// Corner opposite the longest side when the triangle is lower than `height` over it.
+/// Index of the corner opposite the longest side, when the height of the triangle over it is less than `height`.
 fn needle_tip(c: &[Vector<3>; 3], height: f64) -> Option<usize> {
     let side = |k: usize| (c[(k + 2) % 3] - c[(k + 1) % 3]).norm();
     let tip = (0..3).fold(0, |a, k| if side(k) > side(a) { k } else { a });
     (2.0 * simplex::area_vector(c).norm() <= height * side(tip)).then_some(tip)
 }
 
-/// Consistent orientation within components, outward by the sign of their volume; tells which triangles belong to components that
-/// faced inwards for the most part.
+/// Makes the orientation consistent within components and outward by the sign of their volume. Returns for each
+/// triangle whether its component was mostly oriented inward.
 fn orient(file: &str, shell: &mut Shell<3>, notes: &mut Vec<String>) -> Result<Vec<bool>, GeometryError> {
     let n = shell.elements.len();
     let neighbours = neighbours(shell);
@@ -146,8 +149,8 @@ fn orient(file: &str, shell: &mut Shell<3>, notes: &mut Vec<String>) -> Result<V
     Ok(inward)
 }
 
-/// For each element those across its edges with two triangles, and whether both run along the edge in the same sense,
-/// which means that one must be turned.
+/// For each element, the elements across its edges with two triangles, and whether both run along the edge in the same
+/// direction, so that one of them must be reversed.
 fn neighbours(shell: &Shell<3>) -> Vec<Vec<(usize, bool)>> {
     let all = facets(&shell.elements);
     let mut neighbours = vec![Vec::new(); shell.elements.len()];
@@ -161,7 +164,7 @@ fn neighbours(shell: &Shell<3>) -> Vec<Vec<(usize, bool)>> {
     neighbours
 }
 
-/// Signed volume of a component about its first corner.
+/// Signed volume of a component relative to its first corner.
 fn volume(shell: &Shell<3>, members: &[usize], flipped: &[bool]) -> f64 {
     let origin = shell.corners(members[0])[0];
     let flux = |e: usize| {
@@ -172,7 +175,7 @@ fn volume(shell: &Shell<3>, members: &[usize], flipped: &[bool]) -> f64 {
     members.iter().map(|&e| flux(e)).sum()
 }
 
-/// Refuses edges with an odd number of triangles.
+/// Rejects edges with an odd number of triangles.
 fn check_edges(file: &str, shell: &Shell<3>, notes: &mut Vec<String>) -> Result<(), GeometryError> {
     let all = facets(&shell.elements);
     let middle = |f: &Facet| (shell.vertices[f.vertices[0] as usize] + shell.vertices[f.vertices[1] as usize]) * 0.5;

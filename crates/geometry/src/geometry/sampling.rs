@@ -1,29 +1,30 @@
-//! Walking over a surface: what the cloud needs to know where to be fine and where interface particles go.
+//! Sampling of a surface, for refinement sources and interface particles.
 use super::surface::{Element, Surface};
 use crate::math::Vector;
 use crate::math::sweep::sweep_each;
 
-/// Elements that one task samples.
+/// Number of elements that one parallel task samples.
 const GROUP: usize = 256;
-/// Longest over shortest side beyond which a triangle is a sliver: halves across its longest side would be three for two.
+/// Ratio of longest to shortest side above which a triangle is a sliver, for which bisection of the longest side is
+/// inefficient.
 const SLIVER: f64 = 4.0;
 
-/// A smooth piece of outline: elements in order, each starting where the one before ends.
+/// A smooth piece of outline: consecutive elements, each starting at the end of the previous one.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Chain {
-    /// Elements.
+    /// Indices of the elements.
     pub elements: Vec<u32>,
-    /// True when the last element leads back to the first without a sharp corner.
+    /// True when the last element is connected to the first without a sharp corner.
     pub closed: bool,
 }
 
 impl<const D: usize> Surface<D> {
-    /// One element.
+    /// Element number `element`.
     pub fn element(&self, element: u32) -> &Element<D> {
         &self.elements[element as usize]
     }
 
-    /// The outlines of a 2-D surface cut at sharp corners; empty in 3-D.
+    /// The outlines of a 2-D surface, cut at sharp corners; empty in 3-D.
     pub fn chains(&self) -> Vec<Chain> {
         if D != 2 {
             return Vec::new();
@@ -52,19 +53,19 @@ impl<const D: usize> Surface<D> {
         chains
     }
 
-    /// Of the two elements at a corner the one that starts there.
+    /// Of the two elements at a corner, the one that starts there.
     fn after_corner(&self, pair: &[u32; 2]) -> u32 {
         let [a, b] = *pair;
         let (first, second) = (&self.elements[a as usize].vertices, &self.elements[b as usize].vertices);
         if first[D - 1] == second[0] { b } else { a }
     }
 
-    /// `f(x, radius of curvature)` at points of the surface no farther apart than about `size`.
+    /// Evaluates `f(x, radius of curvature)` at points of the surface with distances of at most about `size`.
     pub fn samples<T: Clone + Send>(&self, size: f64, f: impl Fn(&Vector<D>, f64) -> T + Sync) -> Vec<T> {
         self.pieces(|_| size, |x, _, _, e| Some(f(x, self.radius[e as usize])))
     }
 
-    /// Calls `f(x)` along edges that turn by more than `angle` radians, at most `spacing` apart.
+    /// Calls `f(x)` at points along edges that turn by more than `angle` [rad], at most `spacing` apart.
     pub fn for_each_sharp_point(&self, angle: f64, spacing: f64, mut f: impl FnMut(&Vector<D>)) {
         for edge in self.sharp.iter().filter(|e| e.turn.abs() > angle) {
             let along = edge.ends[1] - edge.ends[0];
@@ -73,7 +74,8 @@ impl<const D: usize> Surface<D> {
         }
     }
 
-    /// What `f(x, normal, share of its element, element)` makes of pieces of the surface no larger than `size(x)`, element by element.
+    /// Evaluates `f(x, normal, share of the element, element)` for pieces of the surface no larger than `size(x)`,
+    /// element by element.
     pub fn pieces<T: Clone + Send>(
         &self,
         size: impl Fn(&Vector<D>) -> f64 + Sync,
@@ -88,13 +90,13 @@ impl<const D: usize> Surface<D> {
             }
             found
         });
-        // one after the other, so that there are never two of all
+        // one after the other, to avoid two copies of the whole list
         let mut all = Vec::with_capacity(groups.iter().map(Vec::len).sum());
         groups.into_iter().for_each(|found| all.extend(found));
         all
     }
 
-    /// Cuts an element in halves across its longest side until it is small enough; points lie on the shape itself.
+    /// Bisects an element across its longest side until the parts are small enough; points lie on the exact shape.
     fn subdivide(&self, e: u32, size: &dyn Fn(&Vector<D>) -> f64, f: &mut dyn FnMut(&Vector<D>, &Vector<D>, f64)) {
         if let Some(bands) = Bands::along(&self.corners(e)) {
             return bands.cut(size, &mut |weights, share| self.give(e, weights, share, f));
@@ -128,7 +130,7 @@ impl<const D: usize> Surface<D> {
         }
     }
 
-    /// Calls `f` with the point of the shape at these barycentric weights and with a share of the element.
+    /// Calls `f` with the point of the shape at these barycentric weights and with its share of the element.
     fn give(&self, e: u32, weights: [f64; D], share: f64, f: &mut dyn FnMut(&Vector<D>, &Vector<D>, f64)) {
         let (point, normal) = self.element_point(e, &weights);
         let shape = self.project(&super::surface::Nearest { point, normal, distance: 0.0, element: e, weights });
@@ -136,8 +138,8 @@ impl<const D: usize> Surface<D> {
     }
 }
 
-/// A sliver of a triangle, x(s, c) = A + s ((1 - c) (B - A) + c (C - A)) with BC its shortest side: cells of s and c stay
-/// compact where halves of triangles do not. A cell has the share (s₁² - s₀²) (c₁ - c₀) of the area.
+/// A sliver x(s, c) = A + s ((1 - c) (B - A) + c (C - A)), whose shortest side is BC. Cells in s and c stay compact
+/// where halves of triangles do not. A cell has the share (s₁² - s₀²) (c₁ - c₀) of the area.
 struct Bands<'a, const D: usize> {
     corners: &'a [Vector<D>; D],
     apex: usize,
@@ -146,7 +148,7 @@ struct Bands<'a, const D: usize> {
 }
 
 impl<'a, const D: usize> Bands<'a, D> {
-    /// Of a triangle that is a sliver.
+    /// The bands of a triangle, if it is a sliver.
     fn along(corners: &'a [Vector<D>; D]) -> Option<Self> {
         if D != 3 {
             return None;
@@ -163,7 +165,8 @@ impl<'a, const D: usize> Bands<'a, D> {
         w
     }
 
-    /// Halves cells until each is no larger than `size` at its centre; gives the weights of that and the share of the area.
+    /// Bisects cells until each is no larger than `size` at its centre; passes on the barycentric weights of the centre
+    /// and its share of the area.
     fn cut(&self, size: &dyn Fn(&Vector<D>) -> f64, f: &mut dyn FnMut([f64; D], f64)) {
         let mut stack = vec![([0.0, 1.0], [0.0, 1.0])];
         while let Some(([s0, s1], [c0, c1])) = stack.pop() {

@@ -1,17 +1,17 @@
-//! The skin of one body: vertices and elements, and what follows from them: creases, smooth normals, curvature.
+//! The surface of one body: vertices and elements, and the derived creases, smooth normals and curvature.
 //!
-//! Two elements meet at a facet: a vertex in 2-D, an edge in 3-D. A facet is a crease where the normals of its elements
-//! turn by more than the crease angle. The smooth normal at a corner is a mean over the
-//! elements that are reached around the vertex without stepping over a crease, weighted so that it is exact for vertices
-//! on a sphere however they are connected (N. Max, J. Graphics Tools 4(2), 1999): area over the squared lengths of the
-//! two sides at the corner.
+//! Two elements meet at a facet: a vertex in 2-D, an edge in 3-D. A facet is a crease where the angle between the
+//! normals of its elements exceeds the crease angle. The smooth normal at a corner is a weighted mean over the elements
+//! around the vertex that are reached without crossing a crease. The weights, area over the squared lengths of the two
+//! sides at the corner, are exact for vertices on a sphere with any connectivity (N. Max, J. Graphics Tools 4(2),
+//! 1999).
 use super::simplex::{self, Corners};
 use crate::math::{Bounds, Vector};
 
-/// Shape that is known exactly, beyond its elements.
+/// Exactly known shape of a body.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Exact<const D: usize> {
-    /// Known by its elements and corner normals only.
+    /// Only the elements and corner normals are known.
     None,
     /// A circle or a sphere.
     Ball {
@@ -22,33 +22,36 @@ pub enum Exact<const D: usize> {
     },
 }
 
-/// The skin of one body: input to [`super::Surface::new`].
+/// The surface of one body: input to [`super::Surface::new`].
 #[derive(Clone, Debug)]
 pub struct Shell<const D: usize> {
     /// Vertices.
     pub vertices: Vec<Vector<D>>,
-    /// Vertex indices of the elements, counter-clockwise seen from the fluid (2-D: along a counter-clockwise outline).
+    /// Vertex indices of the elements, counter-clockwise when viewed from the fluid (2-D: along a counter-clockwise
+    /// outline).
     pub elements: Vec<[u32; D]>,
-    /// Outward unit normals at the corners when they are known; otherwise they are averaged from the elements.
+    /// Outward unit normals at the corners, if they are known; otherwise they are averaged from the elements.
     pub normals: Option<Vec<[Vector<D>; D]>>,
-    /// Signed curvature of largest magnitude of the elements when it is known; otherwise it follows from their normals.
+    /// Signed curvature of largest magnitude of the elements, if it is known; otherwise it is computed from the
+    /// normals.
     pub curvature: Option<Vec<f64>>,
-    /// Index into `tag_names` of every element; empty when the body has a single tag.
+    /// Index into `tag_names` for every element; empty when the body has a single tag.
     pub tags: Vec<u16>,
     /// Names of parts (STL solids, OBJ groups); empty when there are none.
     pub tag_names: Vec<String>,
-    /// Exact shape when known.
+    /// Exact shape, if it is known.
     pub exact: Exact<D>,
-    /// Turning angle above which a facet is a sharp edge, radians.
+    /// Angle between normals above which a facet is a sharp edge [rad].
     pub crease: f64,
 }
 
-/// Where elements meet at an angle above the crease angle.
+/// A sharp edge, at which elements meet at more than the crease angle.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Edge<const D: usize> {
     /// Ends of the edge; a corner of a 2-D outline is given twice.
     pub ends: [Vector<D>; 2],
-    /// Angle between the normals of both sides, radians: positive where the body is convex, near π at a sharp trailing edge.
+    /// Angle between the normals of both sides [rad]: positive where the body is convex, near π at a sharp trailing
+    /// edge.
     pub turn: f64,
     /// Elements on both sides.
     pub elements: [u32; 2],
@@ -63,7 +66,7 @@ struct Joint {
     turn: f64,
 }
 
-/// What follows from the elements of a shell.
+/// Geometric features derived from the elements of a shell.
 pub(super) struct Features<const D: usize> {
     pub(super) normals: Vec<[Vector<D>; D]>,
     pub(super) curvature: Vec<f64>,
@@ -82,14 +85,15 @@ impl<const D: usize> Shell<D> {
         (0..self.elements.len()).map(|e| self.corners(e)).collect()
     }
 
-    /// For each element the first of those that are reached from it across facets with two elements; `all` are its facets.
+    /// For each element, the first element of its connected component across facets with two elements; `all` are the
+    /// facets.
     pub(super) fn edge_connected(&self, all: &[Facet]) -> Vec<u32> {
         let mut group: Vec<u32> = (0..self.elements.len() as u32).collect();
         runs(all).filter(|run| run.len() == 2).for_each(|run| unite(&mut group, run[0].element, run[1].element));
         (0..self.elements.len() as u32).map(|e| root(&mut group, e)).collect()
     }
 
-    /// Creases, corner normals and curvature. Edges carry body 0 and local element numbers.
+    /// Creases, corner normals and curvature. Edges have body number 0 and local element numbers.
     pub(super) fn features(&self) -> Features<D> {
         let joints = self.joints();
         let creased = |j: &Joint| j.turn.abs() > self.crease;
@@ -107,8 +111,8 @@ impl<const D: usize> Shell<D> {
         Features { edges: edges.collect(), normals, curvature }
     }
 
-    /// Lets normals differ on both sides of the facets whose ends are all `apart`, where the shape has a kink below the crease
-    /// angle: a patch with one normal there would leave the flat sides beside it.
+    /// Permits different normals on both sides of the facets whose ends are all `apart`, where the shape has a kink
+    /// below the crease angle. A smooth patch with a single normal would not reproduce the flat sides there.
     pub(super) fn kinked(mut self, apart: impl Fn(&Vector<D>) -> bool) -> Self {
         let joints = self.joints();
         let kink = |j: &Joint| j.facet.iter().all(|v| apart(&self.vertices[*v as usize]));
@@ -156,9 +160,9 @@ impl<const D: usize> Shell<D> {
         (0..self.elements.len()).map(|e| std::array::from_fn(|k| normal(e, k))).collect()
     }
 
-    /// Signed curvature of largest magnitude of every element, zero where it is flat within the noise of the vertices.
+    /// Signed curvature of largest magnitude of every element; zero where it is flat within the noise of the vertices.
     fn curvature_of(&self, normals: &[[Vector<D>; D]]) -> Vec<f64> {
-        // Single-precision files round coordinates to 6e-8 of their size: a sagitta below that is noise.
+        // single-precision files round coordinates to 6e-8 of their size: a smaller sagitta is noise
         const NOISE: f64 = 6e-8;
         let noise = NOISE * Bounds::around(&self.vertices).extent().norm();
         let flat = |kappa: f64, size: f64| kappa.abs() * size * size <= noise || kappa.abs() * size <= 1e-6;
@@ -173,7 +177,7 @@ impl<const D: usize> Shell<D> {
         if self.normals.is_some() || D == 2 { each } else { self.averaged(&each) }
     }
 
-    /// Mean over the elements around the vertices: calms the scatter of a rough triangulation.
+    /// Average over the elements around the vertices, which reduces the scatter of an irregular triangulation.
     fn averaged(&self, values: &[f64]) -> Vec<f64> {
         let mut sum = vec![(0.0, 0.0); self.vertices.len()];
         for (e, value) in values.iter().enumerate() {
@@ -192,7 +196,7 @@ impl<const D: usize> Shell<D> {
     }
 }
 
-/// One side of a facet: its vertices in ascending order, the element and the corner opposite.
+/// One side of a facet: its vertices in ascending order, the element, and the opposite corner.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) struct Facet {
     pub(super) vertices: [u32; 2],
@@ -200,7 +204,7 @@ pub(super) struct Facet {
     pub(super) opposite: usize,
 }
 
-/// All sides of all facets, equal ones next to each other.
+/// All sides of all facets; equal facets are adjacent in the list.
 pub(super) fn facets<const D: usize>(elements: &[[u32; D]]) -> Vec<Facet> {
     let mut facets = Vec::with_capacity(elements.len() * D);
     for (e, vertices) in elements.iter().enumerate() {
@@ -218,12 +222,12 @@ pub(super) fn runs(facets: &[Facet]) -> impl Iterator<Item = &[Facet]> {
     facets.chunk_by(|a, b| a.vertices == b.vertices)
 }
 
-/// A place in words.
+/// A position as text for a message.
 pub(super) fn at(x: &Vector<3>) -> String {
     format!("({:.6}, {:.6}, {:.6})", x[0], x[1], x[2])
 }
 
-/// Representative of `i` in a forest of groups; halves paths on the way.
+/// Representative of `i` in a union-find forest, with path halving.
 pub(super) fn root(group: &mut [u32], mut i: u32) -> u32 {
     while group[i as usize] != i {
         group[i as usize] = group[group[i as usize] as usize];
@@ -232,14 +236,14 @@ pub(super) fn root(group: &mut [u32], mut i: u32) -> u32 {
     i
 }
 
-/// Joins the groups of `i` and `j`; the smaller index represents both.
+/// Unites the groups of `i` and `j`; the smaller index becomes the representative.
 pub(super) fn unite(group: &mut [u32], i: u32, j: u32) {
     let (i, j) = (root(group, i), root(group, j));
     group[i.max(j) as usize] = i.min(j);
 }
 
 impl<const D: usize> Shell<D> {
-    /// The same shell when `E` equals `D`: lets code generic over the dimension take a shell of a known one.
+    /// The same shell when `E` equals `D`, for code that is generic in the dimension.
     pub(super) fn cast<const E: usize>(self) -> Option<Shell<E>> {
         if D != E {
             return None;
