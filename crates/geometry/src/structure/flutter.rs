@@ -1,15 +1,12 @@
-//! Flutter analysis of a structure in a stream whose speed, density or altitude is varied at constant Mach number (p-k
-//! method).
+//! Flutter analysis (p-k method): speed, density or altitude of the stream is varied at constant Mach number.
 //!
-//! With x = U/U_ref, the speed relative to that of the reference for which matrices and time are given, motions q
-//! e^{λt} satisfy
+//! With x = U/U_ref, the speed relative to that for which matrices and time are given, motions q e^{λt} satisfy
 //!
 //! D(λ, x) q = [M λ² + C λ + K − x² Q(iκ)] q = 0, κ = Im λ/x,
 //!
 //! the p-k method (Hassig, J. Aircraft 8, 1971): the aerodynamic forces are those of the harmonic motion with the same
 //! frequency, which is exact for neutral stability. κ = 0 is the limit of steady displacements. Where density is varied
-//! instead, x is the ratio of dynamic pressures, x² Q becomes x Q, and κ = Im λ/u with the speed u that corresponds to
-//! x ([`Varied`]).
+//! instead, x is the dynamic pressure ratio, x² Q becomes x Q, and κ = Im λ/u with the speed u at x ([`Varied`]).
 //!
 //! The branches λ(x), one for each natural mode, are followed in modal coordinates, ΦᵀMΦ = 1: first at one low speed
 //! while damping and aerodynamic forces are increased from zero, then along x. Newton's method for D q = 0, q₀ᴴ q = 1,
@@ -18,11 +15,9 @@
 //! |λ − λ_F| ∝ |x − x_F|^½. Every branch turns right at this point, so that the two are distinguished: of two
 //! coalescing frequencies, the lower one, which rises, becomes the unstable branch.
 //!
-//! A mode without stiffness starts with an artificial stiffness that is removed as the forces are increased, because
-//! the stream may provide stiffness.
+//! A mode without stiffness starts with an artificial one that is removed as the forces are increased.
 //!
-//! Where density is varied, a motion that is unstable from the start has its flutter point at x = 0
-//! ([`Flutter::grows_from`]).
+//! Where density is varied, motions unstable from the start have their flutter point at 0 ([`Flutter::grows_from`]).
 //!
 //! Limits: a branch ends where its frequency reaches zero, and where no root is found. Non-oscillatory motions, among
 //! them divergence, are treated separately ([`StillMotions`]).
@@ -62,8 +57,7 @@ const NEWTON: usize = 40;
 const CONVERGED: [f64; 2] = [1e-14, 1e-8];
 /// Greatest number of secant steps for κ.
 const SECANT: usize = 60;
-/// Relative change of the frequency at which the secant iteration ends, and the change that is acceptable when it
-/// stagnates.
+/// Relative change of the frequency at which the secant iteration ends, and at which it may stagnate.
 const MATCHED: [f64; 2] = [1e-12, 1e-10];
 /// Ratio of growth rate and root below which a motion is neutral; far above round-off.
 const NEUTRAL: f64 = 1e-9;
@@ -71,8 +65,7 @@ const NEUTRAL: f64 = 1e-9;
 const LOCATED: [f64; 2] = [1e-13, 1e-15];
 /// Ratio of imaginary and real part below which an eigenvalue counts as real.
 const REAL: f64 = 1e-8;
-/// Squared natural frequencies with a relative distance below the first value are separated by the second value until
-/// forces act.
+/// Squared natural frequencies nearer than the first value (relative) are separated by the second until forces act.
 const CLOSE: [f64; 2] = [1e-3, 1e-2];
 /// Squared frequency relative to the largest, below which a mode has no stiffness except round-off.
 const RIGID: f64 = 1e-13;
@@ -125,8 +118,7 @@ pub struct Crossing {
     pub kind: Kind,
     /// Branch to which it belongs.
     pub branch: Branch,
-    /// Natural mode (by ascending frequency) whose branch crosses; for divergence, the mode with the largest part of
-    /// the displacement.
+    /// Natural mode (by ascending frequency) of the branch; for divergence, the mode with the largest displacement.
     pub mode: usize,
     /// Varied quantity x; U/U_ref unless another quantity is varied.
     pub x: f64,
@@ -310,8 +302,7 @@ impl<'a> Flutter<'a> {
         Some(if before { low } else { high })
     }
 
-    /// Roots along the line from `from` to the place `to`, and whether the end is reached, in steps of at most
-    /// `longest`.
+    /// Roots on the line from `from` to `to` in steps of at most `longest`, and whether the end is reached.
     fn follow(&self, modes: &Modes, from: Root, to: Place, longest: f64) -> (Vec<Root>, bool) {
         let moves = [to.x - from.place.x, to.on - from.place.on];
         let length = moves[0] + moves[1];
@@ -345,8 +336,7 @@ impl<'a> Flutter<'a> {
         (path, true)
     }
 
-    /// The root at `place`, at the distance `size`, near `guess`; `None` when there is none or it belongs to another
-    /// branch.
+    /// The root at `place`, `size` away, near `guess`; `None` when there is none or it belongs to another branch.
     fn step(&self, modes: &Modes, from: &Root, place: Place, size: f64, guess: Complex64) -> Option<Root> {
         let (lambda, shape) = self.root(modes, place, guess, &from.shape)?;
         let turned = inner(&from.shape, &shape).norm_sqr();
