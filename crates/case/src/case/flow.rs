@@ -5,9 +5,9 @@ use serde::{Deserialize, Serialize};
 
 use super::{Body, Flow, Temperature};
 
-/// Sutherland's constant of air [K] (U.S. Standard Atmosphere, 1976).
+/// Sutherland's constant of air (K) (U.S. Standard Atmosphere, 1976).
 const SUTHERLAND: f64 = 110.4;
-/// Default temperature of the free stream [K] (U.S. Standard Atmosphere, 1976, sea level).
+/// Default temperature of the free stream (K) (U.S. Standard Atmosphere, 1976, sea level).
 const SEA_LEVEL: f64 = 288.15;
 /// Prandtl number of air.
 const PRANDTL: f64 = 0.72;
@@ -182,7 +182,7 @@ impl Flow {
         body.wall.unwrap_or(if self.is_viscous() { Wall::Adiabatic } else { Wall::Slip })
     }
 
-    /// Temperature of the free stream [K]; 288.15 K when the case gives none.
+    /// Temperature of the free stream (K); 288.15 K when the case gives none.
     pub fn kelvin(&self) -> f64 {
         let from_gas_law = || {
             let (density, pressure) = self.state();

@@ -154,9 +154,9 @@ pub struct Flow {
     pub mach: Option<f64>,
     /// Speed [m/s]; an alternative to `mach` when the free stream is dimensional.
     pub velocity: Option<Velocity>,
-    /// Static pressure [Pa].
+    /// Static pressure (Pa).
     pub pressure: Option<Pressure>,
-    /// Static temperature [K].
+    /// Static temperature (K).
     pub temperature: Option<Temperature>,
     /// Density [kg/m³]; an alternative to `temperature`.
     pub density: Option<Density>,
@@ -167,21 +167,21 @@ pub struct Flow {
     /// True when the entropy of the gas is constant and equal to that of the free stream.
     #[serde(default)]
     pub isentropic: bool,
-    /// Angle of attack [rad], nose up positive: the velocity turns from +x towards +y in 2-D, towards +z in 3-D.
+    /// Angle of attack (rad), nose up positive: the velocity turns from +x towards +y in 2-D, towards +z in 3-D.
     #[serde(default)]
     pub alpha: Angle,
-    /// Sideslip angle [rad], 3-D only: the velocity turns towards +y.
+    /// Sideslip angle (rad), 3-D only: the velocity turns towards +y.
     #[serde(default)]
     pub beta: Angle,
     /// Reynolds number based on `reynolds_length`; the flow is inviscid when this and `viscosity` are absent.
     pub reynolds: Option<f64>,
     /// Reference length of the Reynolds number; absent: the reference chord.
     pub reynolds_length: Option<Length>,
-    /// Dynamic viscosity of the free stream [Pa s]; an alternative to `reynolds` when the free stream is dimensional.
+    /// Dynamic viscosity of the free stream (Pa s); an alternative to `reynolds` when the free stream is dimensional.
     pub viscosity: Option<Viscosity>,
     /// Temperature dependence of the viscosity; absent: Sutherland's law.
     pub viscosity_law: Option<ViscosityLaw>,
-    /// Sutherland's constant [K]; absent: 110.4 K, air.
+    /// Sutherland's constant (K); absent: 110.4 K, air.
     pub sutherland: Option<Temperature>,
     /// Prandtl number; absent: 0.72, air.
     pub prandtl: Option<f64>,

@@ -8,7 +8,7 @@ use super::quantity::{Time, WallTime};
 pub struct Output {
     /// Greatest number of iterations between checkpoints.
     pub checkpoint: u32,
-    /// Greatest wall-clock time between checkpoints [s].
+    /// Greatest wall-clock time between checkpoints (s).
     pub checkpoint_time: WallTime,
     /// Time between field files of a time march; absent: only the last field is written.
     pub field_interval: Option<Time>,

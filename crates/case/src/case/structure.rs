@@ -140,9 +140,9 @@ pub struct StructureFlap {
 pub struct SpringShape {
     /// Cubic coefficient [1/length² or 1/rad²].
     pub cubic: f64,
-    /// Half the free play [length or rad].
+    /// Half the free play (length or rad).
     pub free_play: f64,
-    /// Coordinate at which the spring is unloaded [length or rad].
+    /// Coordinate at which the spring is unloaded (length or rad).
     pub rest: f64,
 }
 

@@ -24,9 +24,9 @@ pub enum Temporal {
 /// Implicit time marching of a purely structural case by the generalised-α method.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Newmark {
-    /// Time step [s].
+    /// Time step (s).
     pub step: Time,
-    /// End time [s].
+    /// End time (s).
     pub until: Time,
     /// Spectral radius ρ∞ at infinite frequency, from 0 to 1.
     pub rho_infinity: f64,

@@ -1,8 +1,8 @@
 //! Exactly conservative coefficients.
 //!
 //! The unknowns are one area vector per pair of particles, s_ij = −s_ji, and one volume per fluid particle. They are to
-//! be as near as possible to those of the least-squares fit, s⁰_ij = V⁰_i a_ij − V⁰_j a_ji: minimise Σ |s − s⁰|²/w_ij +
-//! Σ (V − V⁰)²/b_i subject to
+//! be as near as possible to those of the least-squares fit, s⁰_ij = V⁰_i a_ij − V⁰_j a_ji: minimise Σ
+//! |s − s⁰|²/w_ij + Σ (V − V⁰)²/b_i subject to
 //!
 //! - Σ_j s_ij + Σ_w s_iw = 0 for every fluid particle (hard constraint): what one particle loses another one gains;
 //! - ½ Σ_j s_ij ⊗ d_ij + Σ_w s_iw ⊗ d_iw = V_i I (soft constraint with parameter ε): exactness for linear fields.

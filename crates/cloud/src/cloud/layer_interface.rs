@@ -2,8 +2,8 @@
 //!
 //! Inside the layers, a particle has the neighbours (i ± 1, k) and (i, k ± 1), in 3-D those in all adjacent columns;
 //! where the adjacent column is one layer shorter, its last particle instead. The particles of the last two layers, and
-//! of every layer of a column at a sharp edge, have background neighbours as well: all visible particles within ρ (h_i
-//! + h_j)/2, which include the last two layers of columns on opposite walls.
+//! of every layer of a column at a sharp edge, have background neighbours as well: all visible particles within ρ
+//! (h_i + h_j)/2, which include the last two layers of columns on opposite walls.
 use super::layers::Beside;
 use super::neighbours::{IDENTITY, Search, Seen};
 use crate::math::Vector;

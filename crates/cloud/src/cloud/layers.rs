@@ -1,12 +1,12 @@
 //! Wall layers: layers of particles along the walls that are thin across them.
 //!
-//! Every interface particle may carry a *column*: fluid particles on its normal at the heights η_k = Δ(1 + g + … +
-//! g^(k−1)), which are the same for all columns, so that the particles of equal number k form a *layer* along the wall.
-//! Inside the layers, the neighbours of particle (i, k) form a cross, (i ± 1, k) and (i, k ± 1), and derivatives are
-//! fitted in the space of these numbers: the slopes f_ξ, f_η by least squares over the offsets (±1, 0), (0, ±1), the
-//! metric terms x_ξ, x_η with the same weights, and then ∇f = J⁻¹ (f_ξ, f_η), where x_ξ and x_η are the rows of J. This
-//! is exact for linear fields at any aspect ratio of the layers and any curvature of the wall, and |det J| is the
-//! volume.
+//! Every interface particle may carry a *column*: fluid particles on its normal at the heights
+//! η_k = Δ(1 + g + … + g^(k−1)), which are the same for all columns, so that the particles of equal number k form a
+//! *layer* along the wall. Inside the layers, the neighbours of particle (i, k) form a cross, (i ± 1, k) and (i, k ±
+//! 1), and derivatives are fitted in the space of these numbers: the slopes f_ξ, f_η by least squares over the offsets
+//! (±1, 0), (0, ±1), the metric terms x_ξ, x_η with the same weights, and then ∇f = J⁻¹ (f_ξ, f_η), where x_ξ and x_η
+//! are the rows of J. This is exact for linear fields at any aspect ratio of the layers and any curvature of the wall,
+//! and |det J| is the volume.
 //!
 //! In 3-D, several columns surround each column (module `wall_stars`). The offsets ±1 are then replaced by the
 //! directions to the feet of these columns along the wall, divided by their mean distance, and the layers consist of

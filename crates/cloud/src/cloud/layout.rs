@@ -9,7 +9,7 @@ use crate::math::{Bounds, Vector};
 
 /// Default half-width of the far field in body lengths, for two and three dimensions.
 const FAR_FIELD: [f64; 2] = [40.0, 10.0];
-/// Turning angle [rad] above which an edge of the surface is refined by additional levels.
+/// Turning angle (rad) above which an edge of the surface is refined by additional levels.
 const SHARP: f64 = 0.35;
 /// Greatest relative deviation of the sides of an explicit domain from a whole number of cells.
 const MISFIT: f64 = 1e-6;

@@ -1,7 +1,7 @@
 //! Refinement sources: points and boxes that limit the size of the background cells around them.
 //!
-//! A source at x_k with spacing h_k and `layers` n splits every cell of size s > h_k whose centre is nearer than (n/2 +
-//! 0.87) s. This leaves about n cells of each size before the next coarser size begins.
+//! A source at x_k with spacing h_k and `layers` n splits every cell of size s > h_k whose centre is nearer than
+//! (n/2 + 0.87) s. This leaves about n cells of each size before the next coarser size begins.
 use crate::math::{Bounds, Vector};
 
 /// Number of points in a leaf of the search tree.

@@ -1,7 +1,7 @@
 //! Transformation of surface data under a smooth map of space, X ↦ x(X), with the deformation gradient F.
 //!
-//! Area vectors transform by Nanson's formula, S′ = cof F S with cof F = det F F⁻ᵀ, and normals accordingly: n′ =
-//! m/|m|, m = F⁻ᵀ n. Differentiating Fᵀ m = n gives ∂m/∂x = F⁻ᵀ (K − Σ_i m_i ∂²x_i/∂X∂X) F⁻¹. Its part along the
+//! Area vectors transform by Nanson's formula, S′ = cof F S with cof F = det F F⁻ᵀ, and normals accordingly:
+//! n′ = m/|m|, m = F⁻ᵀ n. Differentiating Fᵀ m = n gives ∂m/∂x = F⁻ᵀ (K − Σ_i m_i ∂²x_i/∂X∂X) F⁻¹. Its part along the
 //! surface divided by |m| is the curvature tensor of the deformed surface. This is exact for any map with two
 //! derivatives.
 use super::Interface;

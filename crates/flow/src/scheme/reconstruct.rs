@@ -1,8 +1,8 @@
 //! Reconstruction of the states at the midpoint of an edge.
 //!
-//! MUSCL on primitive variables (van Leer 1979, in the edge form of Löhner 2008): with the upwind difference a =
-//! 2∇q_i·d − Δq and the central difference b = Δq = q_j − q_i, the state is q_L = q_i + s/4 [(1 − κs) a + (1 + κs) b].
-//! The limiter s(a, b) is 1 in smooth flow and decreases to 0 where a and b differ. It is differentiable, so that
+//! MUSCL on primitive variables (van Leer 1979, in the edge form of Löhner 2008): with the upwind difference
+//! a = 2∇q_i·d − Δq and the central difference b = Δq = q_j − q_i, the state is q_L = q_i + s/4 [(1 − κs) a + (1 + κs)
+//! b]. The limiter s(a, b) is 1 in smooth flow and decreases to 0 where a and b differ. It is differentiable, so that
 //! Newton's method converges through shocks.
 //!
 //! In a strong shock or next to a vacuum, slopes are removed smoothly: those of a *steep* particle, whose pressure
@@ -112,8 +112,8 @@ pub trait Limit: Copy + Sync {
     fn factors<S: Scalar>(self, a: [S; 2], b: S, eps: S) -> [S; 2];
 }
 
-/// Limiter of van Albada, van Leer and Roberts (1982) in a form that never reaches zero, s = m/(m + (a − b)²) with m =
-/// ε + (a² + b²)/2. It is differentiable everywhere, so that residuals converge through shocks.
+/// Limiter of van Albada, van Leer and Roberts (1982) in a form that never reaches zero, s = m/(m + (a − b)²) with
+/// m = ε + (a² + b²)/2. It is differentiable everywhere, so that residuals converge through shocks.
 #[derive(Clone, Copy)]
 pub struct VanAlbada;
 impl Limit for VanAlbada {

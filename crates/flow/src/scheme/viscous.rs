@@ -1,14 +1,14 @@
 //! Viscous stress and heat conduction between particles and at walls.
 //!
-//! At the midpoint of the edge d = x_j − x_i, with the mean ḡ of the gradients at both ends and the direction m =
-//! s_ij/|s_ij| of its face, the gradient of velocity and temperature is
+//! At the midpoint of the edge d = x_j − x_i, with the mean ḡ of the gradients at both ends and the direction
+//! m = s_ij/|s_ij| of its face, the gradient of velocity and temperature is
 //!
 //! g = ḡ + m (Δf − ḡ·d)/(m·d),
 //!
 //! the mean, corrected so that the difference between the particles themselves determines the derivative across the
 //! face. A correction along the edge instead of m is inaccurate on thin layers with diagonal neighbours. The
-//! contribution of the viscous flux F_v(g) is +F_v·s_ij/V_i with conservative coefficients, otherwise 2 a_ij·[F_v −
-//! F_v(g_i)]. Both vanish in uniform flow and for uniform stress.
+//! contribution of the viscous flux F_v(g) is +F_v·s_ij/V_i with conservative coefficients, otherwise 2
+//! a_ij·[F_v − F_v(g_i)]. Both vanish in uniform flow and for uniform stress.
 //!
 //! *No-slip walls.* The velocity of an interface particle is that of the wall, its pressure follows from ∂p/∂n = −ρ
 //! n·a_w, and its

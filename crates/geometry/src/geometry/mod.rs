@@ -54,7 +54,7 @@ use std::fs::File;
 use std::io;
 use std::path::Path;
 
-/// Turning angle above which a corner of a polygon is sharp [rad] (5°); the corners of a polygon are intended.
+/// Turning angle above which a corner of a polygon is sharp (rad) (5°); the corners of a polygon are intended.
 const POLYGON_CREASE: f64 = 5.0 * PI / 180.0;
 
 /// Distance relative to the size of a body below which another one touches it.

@@ -16,7 +16,7 @@ const SEGMENTS: u32 = 8192;
 const SUBDIVISIONS: u32 = 6;
 /// Greatest number of subdivisions of [`icosphere`], which gives 21 million triangles.
 const MOST_SUBDIVISIONS: u32 = 10;
-/// Crease angle of primitives [rad] (40°).
+/// Crease angle of primitives (rad) (40°).
 const CREASE: f64 = 40.0 * PI / 180.0;
 
 /// A circle about the origin.

@@ -65,7 +65,7 @@ impl<const D: usize> Surface<D> {
         self.pieces(|_| size, |x, _, _, e| Some(f(x, self.radius[e as usize])))
     }
 
-    /// Calls `f(x)` at points along edges that turn by more than `angle` [rad], at most `spacing` apart.
+    /// Calls `f(x)` at points along edges that turn by more than `angle` (rad), at most `spacing` apart.
     pub fn for_each_sharp_point(&self, angle: f64, spacing: f64, mut f: impl FnMut(&Vector<D>)) {
         for edge in self.sharp.iter().filter(|e| e.turn.abs() > angle) {
             let along = edge.ends[1] - edge.ends[0];

@@ -41,7 +41,7 @@ pub struct Shell<const D: usize> {
     pub tag_names: Vec<String>,
     /// Exact shape, if it is known.
     pub exact: Exact<D>,
-    /// Angle between normals above which a facet is a sharp edge [rad].
+    /// Angle between normals above which a facet is a sharp edge (rad).
     pub crease: f64,
 }
 
@@ -50,7 +50,7 @@ pub struct Shell<const D: usize> {
 pub struct Edge<const D: usize> {
     /// Ends of the edge; a corner of a 2-D outline is given twice.
     pub ends: [Vector<D>; 2],
-    /// Angle between the normals of both sides [rad]: positive where the body is convex, near π at a sharp trailing
+    /// Angle between the normals of both sides (rad): positive where the body is convex, near π at a sharp trailing
     /// edge.
     pub turn: f64,
     /// Elements on both sides.

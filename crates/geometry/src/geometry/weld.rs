@@ -14,7 +14,7 @@ use std::f64::consts::PI;
 const WELD: [f64; 5] = [1e-9, 1e-6, 1e-5, 4e-5, 1e-4];
 /// Smallest size of a surface; squares of areas of smaller ones would underflow.
 const SMALLEST: f64 = 1e-50;
-/// Turning angle above which an edge is sharp [rad] (40°).
+/// Turning angle above which an edge is sharp (rad) (40°).
 const CREASE: f64 = 40.0 * PI / 180.0;
 
 /// Merges vertices nearer than `within`; `None`: the smallest tolerance that closes the surface.

@@ -2,10 +2,10 @@
 //!
 //! x(t) = R(θ(t)) (X + Σ q_m(t) φ_m(X) − p) + p + d(t): the body deforms by its modes φ_m with the coordinates q_m and
 //! rotates by θ about an axis a through its pivot p, which moves with the displacement d; X is the position before any
-//! motion. With v = X − p and its part along the axis, P v = a (a·v), Rodrigues' formula is R v = P v + cos θ (v − P v)
-//! + sin θ (a × v). In 2-D, a points away from the reader, so that positive angles are clockwise: nose up for a stream
-//! along +x. In 3-D the default is a = +y, nose up for lift along +z. θ and d are sums of [`TimeFunction`]s; velocity
-//! and acceleration follow from the same code with [`Jet`]s.
+//! motion. With v = X − p and its part along the axis, P v = a (a·v), Rodrigues' formula is R v = P v + cos θ (v − P
+//! v) + sin θ (a × v). In 2-D, a points away from the reader, so that positive angles are clockwise: nose up for a
+//! stream along +x. In 3-D the default is a = +y, nose up for lift along +z. θ and d are sums of [`TimeFunction`]s;
+//! velocity and acceleration follow from the same code with [`Jet`]s.
 use std::borrow::Cow;
 use std::sync::Arc;
 

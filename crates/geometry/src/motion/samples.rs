@@ -9,7 +9,7 @@ pub(super) struct Samples {
     pub(super) time: Vec<f64>,
     /// Displacements along x, y, z.
     pub(super) shift: [Option<Vec<f64>>; 3],
-    /// Angles [rad].
+    /// Angles (rad).
     pub(super) angle: Option<Vec<f64>>,
 }
 

@@ -1,10 +1,10 @@
 //! Cubic splines of time.
 //!
 //! Piecewise cubic and twice continuously differentiable (de Boor, A Practical Guide to Splines, 1978, ch. 4). The
-//! second derivatives M solve h_{i−1}M_{i−1} + 2(h_{i−1} + h_i)M_i + h_i M_{i+1} = 6(Δ_i − Δ_{i−1}), Δ_i = (y_{i+1} −
-//! y_i)/h_i. For a periodic table the system is cyclic; its corner elements are handled by a rank-one correction
-//! (Sherman and Morrison 1950). Any other spline has zero slope at both ends and is continued by constants, so that the
-//! motion starts from rest.
+//! second derivatives M solve h_{i−1}M_{i−1} + 2(h_{i−1} + h_i)M_i + h_i M_{i+1} = 6(Δ_i − Δ_{i−1}),
+//! Δ_i = (y_{i+1} − y_i)/h_i. For a periodic table the system is cyclic; its corner elements are handled by a rank-one
+//! correction (Sherman and Morrison 1950). Any other spline has zero slope at both ends and is continued by constants,
+//! so that the motion starts from rest.
 use crate::math::jet::Scalar;
 
 /// A cubic spline through values at ascending times.

@@ -25,7 +25,7 @@ pub enum TimeFunction {
         amplitude: f64,
         /// Angular frequency ω.
         omega: f64,
-        /// Phase [rad].
+        /// Phase (rad).
         phase: f64,
     },
     /// The linear function rate·t.

@@ -13,7 +13,7 @@ pub enum ForceHistory {
         amplitude: f64,
         /// Angular frequency ω; zero: a steady force.
         omega: f64,
-        /// Phase [rad].
+        /// Phase (rad).
         phase: f64,
     },
     /// A formula of a case file, in the units of the case.

@@ -7,8 +7,8 @@
 //! is the clockwise rotation and J that by a quarter turn, J (x, y) = (y, −x).
 //!
 //! Let m be the mass (per span), S the first moment about the pivot and I the moment of inertia about it, of the whole
-//! body with β = 0; S_β and I_β are those of the flap about the hinge. With γ = α + β, S₀ = S − S_β and I₀ = I − I_β −
-//! 2 l·S_β, Lagrange's equations are
+//! body with β = 0; S_β and I_β are those of the flap about the hinge. With γ = α + β, S₀ = S − S_β and
+//! I₀ = I − I_β − 2 l·S_β, Lagrange's equations are
 //!
 //! m (d'' − g) + α'' RJS₀ − α'² RS₀ + γ'' R_γJS_β − γ'² R_γS_β = Q_d,
 //!

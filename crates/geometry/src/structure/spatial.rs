@@ -19,7 +19,7 @@ use crate::math::rotation::{
 
 /// Names of the coordinates, in their order.
 pub(super) const NAMES: [&str; 6] = ["surge", "sway", "plunge", "roll", "pitch", "yaw"];
-/// Greatest length of a rotation vector [rad]: half a degree less than a full turn, at which it is singular.
+/// Greatest length of a rotation vector (rad): half a degree less than a full turn, at which it is singular.
 pub(super) const LARGEST_TURN: f64 = std::f64::consts::TAU - 0.01;
 
 /// A rigid body in 3-D.

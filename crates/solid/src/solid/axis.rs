@@ -6,10 +6,10 @@
 //!
 //! ∫ (P : ∇v + P₃₃ v_x/x) x dA = ∮ v·P·n x ds − ∫ v·(div P + (P e_x − P₃₃ e_x)/x) x dA,
 //!
-//! holds for every constant P, and exactly and without an internal force where P₁₁ = P₃₃ and P₁₂ = 0, if Σ_i V_i g_ij =
-//! A_j − 2π a_j e_x, with the areas A_j = 2π ∮ N_j x n ds of hat functions N_j along the surface. The remaining defect
-//! is orthogonal to linear fields, so that the correction of [`super::particles`] exists, if Σ a_j and Σ a_j x_j are
-//! the area and the first moment of the section. Plain shares of the simplex areas miss part of the first moment of
+//! holds for every constant P, and exactly and without an internal force where P₁₁ = P₃₃ and P₁₂ = 0, if Σ_i V_i
+//! g_ij = A_j − 2π a_j e_x, with the areas A_j = 2π ∮ N_j x n ds of hat functions N_j along the surface. The remaining
+//! defect is orthogonal to linear fields, so that the correction of [`super::particles`] exists, if Σ a_j and Σ a_j x_j
+//! are the area and the first moment of the section. Plain shares of the simplex areas miss part of the first moment of
 //! each simplex. The missing moment M_j around particle j is therefore distributed to its neighbours by the weights of
 //! the fit, δa_i = M_j·g_ji. This changes an area by a few per cent; it changes nothing for particles in regular rows.
 //!

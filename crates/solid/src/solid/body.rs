@@ -28,7 +28,7 @@ pub enum Plane {
     Axisymmetric,
 }
 
-/// A function of time [s].
+/// A function of time (s).
 pub type InTime<T> = Box<dyn Fn(f64) -> T + Send + Sync>;
 
 /// A support: particles whose displacement is prescribed along some axes.
@@ -43,9 +43,9 @@ pub struct Support<const D: usize> {
 
 /// Kind of a load on the surface.
 pub enum Action<const D: usize> {
-    /// Pressure [Pa] normal to the deformed surface (follower load).
+    /// Pressure (Pa) normal to the deformed surface (follower load).
     Pressure(f64),
-    /// Force per undeformed area [Pa], with a fixed direction.
+    /// Force per undeformed area (Pa), with a fixed direction.
     Traction(Vector<D>),
 }
 
@@ -90,7 +90,7 @@ pub struct Damping {
     pub viscosity: f64,
     /// Damping proportional to mass: decay rate [1/s].
     pub mass: f64,
-    /// Damping proportional to stiffness [s]: stress due to the strain rate divided by the stress due to the strain.
+    /// Damping proportional to stiffness (s): stress due to the strain rate divided by the stress due to the strain.
     pub stiffness: f64,
 }
 
@@ -99,7 +99,7 @@ pub struct Solid<const D: usize> {
     parts: Parts<D>,
     /// Undeformed positions of the particles.
     pub(super) places: Vec<Row>,
-    /// Mass of each particle [kg].
+    /// Mass of each particle (kg).
     pub(super) mass: Vec<f64>,
     /// Axes along which each particle is constrained, as bits.
     pub(super) held: Vec<u8>,
@@ -242,7 +242,7 @@ impl<const D: usize> Solid<D> {
         &self.materials[usize::from(self.material[i])]
     }
 
-    /// Mass of each particle [kg].
+    /// Mass of each particle (kg).
     pub fn mass(&self) -> &[f64] {
         &self.mass
     }

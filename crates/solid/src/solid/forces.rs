@@ -6,11 +6,11 @@
 //!
 //! where P is the first Piola-Kirchhoff stress. The forces of a pair are opposite, and W is invariant under rotation,
 //! so that momentum and angular momentum are conserved. The second sum comes from the stabilisation energy E_s = ½ Σ_i
-//! c_i Σ_j w |u_j − u_i − A_i d_ij|², the residuals of the uncorrected fits A_i of the displacement gradient, with c =
-//! α μ V D/n. It stabilises the modes that the fits do not represent and vanishes for uniform deformation. Because A_i
-//! minimises the inner sum, its variation contributes no force. The same sum over velocities with c = β ρ c_p h V D/n
-//! damps these modes. Where a material has yielded, the stabilising stiffness is multiplied by s = σ_y/(σ_y + 3 μ ε_p),
-//! and the damping by √s.
+//! c_i Σ_j w |u_j − u_i − A_i d_ij|², the residuals of the uncorrected fits A_i of the displacement gradient, with
+//! c = α μ V D/n. It stabilises the modes that the fits do not represent and vanishes for uniform deformation. Because
+//! A_i minimises the inner sum, its variation contributes no force. The same sum over velocities with c = β ρ c_p h V
+//! D/n damps these modes. Where a material has yielded, the stabilising stiffness is multiplied by s = σ_y/(σ_y + 3 μ
+//! ε_p), and the damping by √s.
 //!
 //! Damping proportional to stiffness is Kelvin-Voigt damping in the undeformed configuration: the second
 //! Piola-Kirchhoff stress gains β C₀ : Ė with the rate of the Green-Lagrange strain E and the initial elastic moduli
@@ -37,7 +37,7 @@ use crate::system::Fault;
 /// A square matrix: the rows are components, the columns axes of the undeformed body.
 pub type Matrix<const D: usize> = [[f64; D]; D];
 
-/// Energies of a solid [J]; for 2-D bodies per unit of thickness.
+/// Energies of a solid (J); for 2-D bodies per unit of thickness.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Energy {
     /// Kinetic energy ½ Σ m v².
@@ -82,9 +82,9 @@ pub struct Tangents<const D: usize> {
 /// The state of motion of a solid at one time.
 #[derive(Clone, Copy, Debug)]
 pub struct State<'a, const D: usize> {
-    /// Time [s].
+    /// Time (s).
     pub time: f64,
-    /// Time since `history` was valid [s]; 0 for an instantaneous response.
+    /// Time since `history` was valid (s); 0 for an instantaneous response.
     pub step: f64,
     /// Displacement of each particle.
     pub displacement: &'a [[f64; D]],
@@ -438,7 +438,7 @@ impl<const D: usize> Solid<D> {
         self.outside(&State { time, ..*state }, force);
     }
 
-    /// Power dissipated by damping in a state [W].
+    /// Power dissipated by damping in a state (W).
     pub fn damped(&self, state: &State<'_, D>) -> f64 {
         let v = state.velocity;
         let slowed = sum(self.len(), |i| self.damping.mass * self.mass[i] * Vector(v[i]).norm_squared());
@@ -493,7 +493,7 @@ impl<const D: usize> Solid<D> {
         Energy { kinetic, strain, stabilisation, contact: self.contact_energy(state), dissipated }
     }
 
-    /// Cauchy stress at particle `i` [Pa].
+    /// Cauchy stress at particle `i` (Pa).
     pub fn cauchy(&self, i: usize, state: &State<'_, D>) -> Tensor {
         let mut f = self.deformation(i, state.displacement);
         let old = self.history_of(state.history, i);
@@ -545,12 +545,12 @@ impl<const D: usize> Solid<D> {
         Err(Fault { particle: i, place, reason })
     }
 
-    /// Longest stable step of explicit integration [s]: that of the undeformed solid, reduced where it is compressed.
+    /// Longest stable step of explicit integration (s): that of the undeformed solid, reduced where it is compressed.
     pub fn stable_step(&self, u: &[[f64; D]]) -> f64 {
         self.step_factors()[0] / self.fastest(u)
     }
 
-    /// Longest stable step without damping [s].
+    /// Longest stable step without damping (s).
     pub fn undamped_step(&self, u: &[[f64; D]]) -> f64 {
         self.step_factors()[1] / self.fastest(u)
     }

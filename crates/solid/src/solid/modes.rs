@@ -19,7 +19,7 @@ pub struct Mode {
     pub omega: f64,
     /// Displacements of all particles, component by component; the greatest magnitude is 1.
     pub shape: Vec<f64>,
-    /// Generalised mass Σ m φ² [kg].
+    /// Generalised mass Σ m φ² (kg).
     pub generalised_mass: f64,
     /// Relative residual |K φ − ω² M φ|, divided by the larger of the two terms.
     pub left: f64,

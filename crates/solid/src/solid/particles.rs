@@ -1,14 +1,15 @@
 //! Particles of an undeformed solid: positions, volumes, and the fit of gradients.
 //!
-//! The gradients are the least-squares fits of the flow solver, ∇φ_i = Σ_j g_ij (φ_j − φ_i) with the weights w =
-//! 1/|d|², over all neighbours j, which are adjacent particles of its rows or all particles within [`REACH`] spacings.
-//! They are then made *variationally consistent*: of all corrections that preserve exactness for linear fields, the
-//! smallest one in the norm of the weights is added such that the discrete divergence theorem Σ_i V_i g_ij = A_j holds
-//! with the area vectors A of the surface. Uniform stress then has no internal force, and the exact traction on the
-//! surface, on any cloud. Corrections that preserve exactness for linear fields are residuals of the fit itself,
-//! R_ij(λ) = λ_j − λ_i − d_ij·∇λ_i, so that λ solves L λ = A − Σ V g once for each axis, with L = Σ_i V_i Σ_j w
-//! R_ijᵀR_ij (following Chen, Hillman and Rüter 2013, doi:10.1002/nme.4512, who correct test functions in this manner).
-//! In a body of revolution, Σ_i V_i g_ij = A_j − 2π a_j e_r takes the place of the divergence theorem (`axis`).
+//! The gradients are the least-squares fits of the flow solver, ∇φ_i = Σ_j g_ij (φ_j − φ_i) with the weights
+//! w = 1/|d|², over all neighbours j, which are adjacent particles of its rows or all particles within [`REACH`]
+//! spacings. They are then made *variationally consistent*: of all corrections that preserve exactness for linear
+//! fields, the smallest one in the norm of the weights is added such that the discrete divergence theorem Σ_i V_i
+//! g_ij = A_j holds with the area vectors A of the surface. Uniform stress then has no internal force, and the exact
+//! traction on the surface, on any cloud. Corrections that preserve exactness for linear fields are residuals of the
+//! fit itself, R_ij(λ) = λ_j − λ_i − d_ij·∇λ_i, so that λ solves L λ = A − Σ V g once for each axis, with L = Σ_i V_i
+//! Σ_j w R_ijᵀR_ij (following Chen, Hillman and Rüter 2013, doi:10.1002/nme.4512, who correct test functions in this
+//! manner). In a body of revolution, Σ_i V_i g_ij = A_j − 2π a_j e_r takes the place of the divergence theorem
+//! (`axis`).
 use std::ops::Range;
 
 use crate::cloud::grid::Grid;

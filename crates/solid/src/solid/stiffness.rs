@@ -1,9 +1,9 @@
 //! The tangent stiffness of a solid as a matrix, for direct solvers.
 //!
-//! K couples all particles that appear together in one neighbour list. Block (j, k) is Σ_m b_mj C_m b_mk / V_m with C =
-//! ∂P/∂F and the weights b of the gradient at m. The stabilisation adds c_m (w_j δ_jk − w_j d_j·M⁻¹d_k w_k). In a body
-//! of revolution, the hoop strain of m couples its radial displacement with all particles of its list; on the axis it
-//! is part of the strain in the plane.
+//! K couples all particles that appear together in one neighbour list. Block (j, k) is Σ_m b_mj C_m b_mk / V_m with
+//! C = ∂P/∂F and the weights b of the gradient at m. The stabilisation adds c_m (w_j δ_jk − w_j d_j·M⁻¹d_k w_k). In a
+//! body of revolution, the hoop strain of m couples its radial displacement with all particles of its list; on the axis
+//! it is part of the strain in the plane.
 use super::body::Solid;
 use super::forces::Tangents;
 use crate::math::Vector;

@@ -61,7 +61,7 @@ fn moment<'a, const D: usize>(at: &Moment<'a>) -> State<'a, D> {
 }
 
 impl<const D: usize> System for Structure<D> {
-    /// The time [s].
+    /// The time (s).
     type Frame = f64;
     type Work = Work<D>;
 

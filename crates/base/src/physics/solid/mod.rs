@@ -47,7 +47,7 @@ pub use viscoelastic::{Branch, Prony};
 
 /// Greatest number of history variables of a law.
 pub const MOST_HISTORY: usize = viscoelastic::MOST_LENGTH;
-/// Room temperature [K].
+/// Room temperature (K).
 pub const ROOM_TEMPERATURE: f64 = 293.15;
 
 /// Constitutive law.
@@ -77,7 +77,7 @@ pub struct Thermal {
     /// Fraction of the plastic work that is converted to heat (Taylor and Quinney 1934); with 0 the temperature is
     /// constant.
     pub heated_fraction: f64,
-    /// Initial temperature [K].
+    /// Initial temperature (K).
     pub start: f64,
 }
 
@@ -228,7 +228,7 @@ impl Material {
         if matches!(self.law, Law::Plastic(_)) { history[plasticity::STRAIN] } else { 0.0 }
     }
 
-    /// Temperature in the history variables [K]; the initial temperature for laws without heating.
+    /// Temperature in the history variables (K); the initial temperature for laws without heating.
     pub fn temperature(&self, history: &[f64]) -> f64 {
         if matches!(self.law, Law::Plastic(_)) { history[plasticity::TEMPERATURE] } else { self.thermal.start }
     }

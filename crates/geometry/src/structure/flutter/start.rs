@@ -6,8 +6,8 @@
 //! dλ = p φᵀ Q(iκ) φ/(2iω), κ = ω/u,
 //!
 //! where the speed u does not vanish with p. The growth rate vanishes with p together with dλ. A motion is unstable
-//! where the real part of dλ exceeds a small fraction of |dλ|, however small both are. Such a motion is neutral at p =
-//! 0, and its flutter point lies there. Structural damping, which does not vanish with p, moves it to a positive
+//! where the real part of dλ exceeds a small fraction of |dλ|, however small both are. Such a motion is neutral at
+//! p = 0, and its flutter point lies there. Structural damping, which does not vanish with p, moves it to a positive
 //! density. Branches that are unstable at the lowest density are therefore followed to lower densities.
 //!
 //! Limits: at constant density, κ increases without bound as the speed vanishes, and forces are not known there. No

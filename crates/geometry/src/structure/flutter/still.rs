@@ -1,8 +1,8 @@
 //! Non-oscillatory motions: divergence, and modes whose frequency has vanished.
 //!
-//! Real roots λ have the aerodynamic forces of steady displacements. In modal coordinates they satisfy λ² + C λ + A(p)
-//! = 0 with A(p) = K − p Q(0) at the dynamic pressure p. Without damping, λ² = −a for each real eigenvalue a of A.
-//! Divergence, K q = p Q(0) q, occurs where one of them becomes negative.
+//! Real roots λ have the aerodynamic forces of steady displacements. In modal coordinates they satisfy λ² + C
+//! λ + A(p) = 0 with A(p) = K − p Q(0) at the dynamic pressure p. Without damping, λ² = −a for each real eigenvalue a
+//! of A. Divergence, K q = p Q(0) q, occurs where one of them becomes negative.
 //!
 //! A coordinate without stiffness has a ∝ p: either it diverges at any speed (p = 0), or the stream provides stiffness.
 //! Displacements that cause neither elastic nor aerodynamic forces, such as the position of a free body, are neutral at

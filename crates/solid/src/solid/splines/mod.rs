@@ -83,7 +83,7 @@ pub struct Mode {
     pub omega: f64,
     /// Relative difference from the frequency on the coarser lattice.
     pub error: f64,
-    /// Generalised mass ∫ ρ φ² dV [kg].
+    /// Generalised mass ∫ ρ φ² dV (kg).
     pub generalised_mass: f64,
     coefficients: Vec<f64>,
 }
@@ -92,7 +92,7 @@ pub struct Mode {
 pub struct SplineModes {
     /// The modes in ascending order of frequency, with unit generalised mass.
     pub modes: Vec<Mode>,
-    /// Mass [kg] of the body on this side of the planes of symmetry.
+    /// Mass (kg) of the body on this side of the planes of symmetry.
     pub mass: f64,
     /// Volume by integration along rays.
     pub volume: f64,
