@@ -62,7 +62,7 @@ const OPENS_FILES: [&str; 7] = [
 /// Who may contain `unsafe`: nobody so far.
 const UNSAFE: [&str; 0] = [];
 /// Who may start threads.
-const PARALLEL: [&str; 1] = ["crates/base/src/math/sweep.rs"];
+const PARALLEL: [&str; 1] = ["crates/base/src/math/parallel.rs"];
 /// Longest file, tests left out.
 const LONGEST_FILE: usize = 600;
 /// Longest line of a hand-written Markdown table or of a message is free; of code `rustfmt` decides.
@@ -273,7 +273,52 @@ fn only_the_command_prints() {
 fn nothing_is_unsafe_and_only_sweeps_are_parallel() {
     assert_none(&offenders(sources(), &["unsafe "], &UNSAFE), "`unsafe` needs an audit");
     let words = ["rayon::", "thread::spawn"];
-    assert_none(&offenders(sources(), &words, &PARALLEL), "every parallel loop is in math::sweep");
+    assert_none(&offenders(sources(), &words, &PARALLEL), "every parallel loop is in math::parallel");
+}
+
+/// What makes one number of many, and what holds a number of every row: particles, interface particles, unknowns.
+const FOLDS: [&str; 6] = [".fold(", ".sum()", ".sum::<", ".reduce(", ".max_by(", ".min_by("];
+const ROWS: [&str; 24] = [
+    "u.iter()",
+    "du.iter()",
+    "rate.iter()",
+    "residual.iter()",
+    "state.iter()",
+    "interface.iter()",
+    "walls.iter()",
+    "wall.iter()",
+    "spacing.iter()",
+    "volume.iter()",
+    "mass.iter()",
+    "mass().iter()",
+    "force.iter()",
+    "load.iter()",
+    "particles.iter()",
+    "velocity.iter()",
+    "displacement.iter()",
+    "interface_range()",
+    "particles.clone()",
+    "0..n_fluid",
+    "n_fluid)",
+    "n_rows())",
+    "self.len())",
+    "interface.len())",
+];
+
+/// Rooms whose numbers go on: what they make of all rows decides on the next step.
+#[test]
+fn sums_over_rows_are_in_one_place() {
+    let mut problems = Vec::new();
+    for path in ["time", "scheme", "solid", "coupling"].iter().flat_map(|m| sources_of(m)) {
+        let text: String = code(&path).split_whitespace().collect();
+        let all = text.split([';', '{', '}']).filter(|s| FOLDS.iter().any(|w| s.contains(w)));
+        let over_rows = all.filter(|s| {
+            let before = s.split(FOLDS.iter().find(|w| s.contains(*w)).unwrap()).next().unwrap();
+            ROWS.iter().any(|w| before.contains(w))
+        });
+        problems.extend(over_rows.map(|s| format!("{path}: {s}")));
+    }
+    assert_none(&problems, "sums, norms and largest values over rows are those of math::reduce");
 }
 
 #[test]

@@ -16,7 +16,8 @@ use super::solids::{OnCloud, Work as SolidWork};
 use super::{Coupled, Frame, Work};
 use crate::math::Vector;
 use crate::math::conjugate::{Symmetric, conjugate_gradients};
-use crate::math::sweep::{sum, sweep_rows};
+use crate::math::parallel::sweep_rows;
+use crate::math::reduce::{first, maximum, sum};
 use crate::scheme::{Taken, View};
 use crate::system::{Instant, Mechanical, System, rows};
 use crate::time::explicit::{Plan, SSPRK3, Stage};
@@ -100,7 +101,7 @@ impl<'a, const D: usize> March<'a, D> {
         let gas = &self.u[self.system.gas_range()];
         let rate = &mut self.rate[..self.system.fields()[0].rows];
         self.system.fluid().rates(&self.frame.gas, gas, &mut self.work.gas, rate);
-        self.plan.cfl / rate.iter().fold(0.0f64, |m, r| m.max(*r))
+        self.plan.cfl / maximum(rate.len(), |i| rate[i])
     }
 
     /// What the gas does to the walls at the start of a step.
@@ -271,14 +272,14 @@ fn implicit<const D: usize>(
     let at = |i: &u32| free(*i as usize, load[*i as usize] + Vector(force[*i as usize]) * per);
     let mut right: Vec<Vector<D>> = surface.iter().map(at).collect();
     let mut found = vec![Vector::ZERO; surface.len()];
-    let size = right.iter().map(Vector::max_abs).fold(f64::MIN_POSITIVE, f64::max);
+    let size = maximum(right.len(), |k| right[k].max_abs()).max(f64::MIN_POSITIVE);
     let (spread, pushed) = (change, load);
     conjugate_gradients(
         &mut found,
         &mut right,
         ITERATIONS,
         Symmetric {
-            enough: |r: &[Vector<D>]| r.iter().all(|r| r.max_abs() <= SOLVED * size),
+            enough: |r: &[Vector<D>]| first(r.len(), |k| !(r[k].max_abs() <= SOLVED * size)).is_none(),
             product: |q: &[Vector<D>], out: &mut [Vector<D>]| {
                 for (q, i) in q.iter().zip(surface) {
                     (spread[*i as usize], pushed[*i as usize]) = (free(*i as usize, *q), Vector::ZERO);

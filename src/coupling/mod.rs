@@ -24,7 +24,8 @@ pub use preconditioner::CoupledPreconditioner;
 
 use std::ops::Range;
 
-use crate::math::sweep::sweep_rows;
+use crate::math::parallel::sweep_rows;
+use crate::math::reduce::{largest_size, sum, sum_each};
 use crate::scheme::{self, Exchange, Fluid, HasGas, View};
 use crate::solid::Solid;
 use crate::solid::forces::State;
@@ -77,6 +78,8 @@ pub struct Work<const D: usize> {
     pub gas: scheme::Work<D>,
     /// Generalised forces of the gas on all coordinates.
     pub load: Vec<f64>,
+    /// Sums of chunks of walls on the way to them.
+    chunks: Vec<f64>,
     /// That of bodies made of particles.
     pub solids: Option<solids::Work<D>>,
 }
@@ -155,12 +158,16 @@ impl<const D: usize> Coupled<D> {
         gas.iter().copied().chain(sprung).chain(solids).chain(virgin).collect()
     }
 
-    /// Generalised forces of the walls whose states are in `work`, for coordinates with the unknowns `u` of the structures.
-    fn loads(&self, frame: &scheme::Frame<D>, work: &scheme::Work<D>, u: &[f64], load: &mut [f64]) {
-        load.fill(0.0);
-        for body in &self.bodies {
-            body.add_loads(&self.fluid, (frame, work), u, &mut load[body.range()]);
-        }
+    /// Sets `work.load` to the generalised forces of the walls whose states are in `work`, for coordinates with the unknowns `u` of the structures.
+    fn loads(&self, frame: &scheme::Frame<D>, u: &[f64], work: &mut Work<D>) {
+        let Work { gas, load, chunks, .. } = work;
+        let view = View::new(&self.fluid, frame, gas);
+        let placements: Vec<_> = self.bodies.iter().map(|body| body.placement(u)).collect();
+        sum_each(view.reference().interface.len(), load, chunks, |walls, load| {
+            for (body, placement) in self.bodies.iter().zip(&placements) {
+                body.add_loads(&view, placement, walls.clone(), &mut load[body.range()]);
+            }
+        });
     }
 
     /// What rates are sought for.
@@ -174,7 +181,7 @@ impl<const D: usize> Coupled<D> {
 
     /// d/dt of the unknowns `u` of the structures under the walls whose states are in `work`.
     fn structures(&self, frame: &Frame<D>, u: &[f64], work: &mut Work<D>, change: &mut [f64]) {
-        self.loads(&frame.gas, &work.gas, u, &mut work.load);
+        self.loads(&frame.gas, u, work);
         for body in &self.bodies {
             let (own, load) = (2 * body.first..2 * body.range().end, &work.load[body.range()]);
             match (self.held, frame.steady) {
@@ -201,11 +208,12 @@ impl<const D: usize> Coupled<D> {
 impl<const D: usize> Coupled<D> {
     /// The largest change of a coordinate of structures and solids in its unit; infinite if NaN.
     fn largest_move(&self, du: &[f64]) -> f64 {
-        let own = du[self.sprung()].chunks_exact(2).zip(self.bodies.iter().flat_map(|b| &b.units));
+        let own = &du[self.sprung()];
+        let units: Vec<f64> = self.bodies.iter().flat_map(|b| b.units.iter().copied()).collect();
+        let sprung = largest_size(units.len().min(own.len() / 2), |k| own[2 * k] / units[k]);
         let unit = self.solids.as_ref().map_or(1.0, |s| s.solids.length);
-        let solid = du[self.solid_range()].chunks_exact(2).map(|pair| pair[0].abs() / unit);
-        let all = own.map(|(pair, unit)| pair[0].abs() / unit).chain(solid);
-        all.fold(0.0, |m, c| if c.is_finite() { m.max(c) } else { f64::INFINITY })
+        let solid = &du[self.solid_range()];
+        largest_size(solid.len() / 2, |k| solid[2 * k] / unit).max(sprung)
     }
 }
 
@@ -223,7 +231,7 @@ impl<const D: usize> System for Coupled<D> {
 
     fn work(&self) -> Work<D> {
         let solids = self.solids.as_ref().map(|s| s.solids.work());
-        Work { gas: self.fluid.work(), load: vec![0.0; self.n_coordinates()], solids }
+        Work { gas: self.fluid.work(), load: vec![0.0; self.n_coordinates()], chunks: Vec::new(), solids }
     }
 
     fn frame(&self, at: &Instant<'_>, u: &[f64]) -> Frame<D> {
@@ -370,21 +378,20 @@ impl<const D: usize> HasGas<D> for Coupled<D> {
         if self.fluid.viscous_model.is_some() {
             self.fluid.fill_gradients(&frame.gas, &mut work.gas);
         }
-        self.loads(&frame.gas, &work.gas, u, &mut work.load);
+        self.loads(&frame.gas, u, work);
         // by the rates of the difference formula, which move the walls: what these take is what the structures get
         let moved = |k: usize| frame.gas.jets.get(k).map_or(u[2 * k + 1], |jet| jet.first);
-        let power = work.load.iter().enumerate().map(|(k, load)| load * moved(k)).sum();
+        let power = sum(work.load.len(), |k| work.load[k] * moved(k));
         let cloud = &frame.gas.discretisation.cloud;
         let velocity = |w: usize| frame.gas.to_inertial_axes(&frame.gas.velocity_of(cloud.n_fluid + w));
         let solids = self.solids.iter().flat_map(|s| &s.solids.bodies).map(|b| b.body);
         let carried: Vec<usize> = self.bodies.iter().map(|b| b.body).chain(solids).collect();
-        let attached = |w: &usize| carried.contains(&usize::from(cloud.interface[*w].body));
-        let walls = (0..cloud.interface.len()).filter(attached);
+        let attached = |w: usize| carried.contains(&usize::from(cloud.interface[w].body));
         let view = View::new(&self.fluid, &frame.gas, &work.gas);
         let by_state = |w: usize| view.wall_force(w).dot(&velocity(w));
         let on_wall =
             |w: usize| frame.gas.taken.get(w).filter(|t| t.area > 0.0).map_or_else(|| by_state(w), |t| t.power);
-        let wall_power = walls.map(on_wall).sum();
+        let wall_power = sum(cloud.interface.len(), |w| if attached(w) { on_wall(w) } else { 0.0 });
         let mut all = Exchange { power, wall_power, ..Exchange::default() };
         for body in &self.bodies {
             body.range().for_each(|k| all.push([u[2 * k], u[2 * k + 1], work.load[k]]));
@@ -485,7 +492,7 @@ impl<const D: usize> Marches<D> for Coupled<D> {
         if self.fluid.viscous_model.is_some() {
             self.fluid.fill_gradients(&frame.gas, &mut work.gas);
         }
-        self.loads(&frame.gas, &work.gas, &u[self.sprung()], &mut work.load);
+        self.loads(&frame.gas, &u[self.sprung()], work);
         work.load.clone()
     }
 

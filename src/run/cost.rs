@@ -13,7 +13,7 @@ use super::disk;
 use super::stage::{Stage, Task};
 use super::time_left::Portion;
 use crate::case::{Case, LoadErrors, Polar, Temporal};
-use crate::math::sweep::threads;
+use crate::math::parallel::threads;
 use crate::problem::bytes_each;
 use crate::problem::numerics::harmonics;
 use crate::problem::spacing;

@@ -1,5 +1,5 @@
 //! What a run has found when it is over: loads, ledgers, errors, the wall.
-use super::look::friction::{Separation, add_friction, separations, wall_friction};
+use super::look::friction::{Separation, friction_load, separations, wall_friction};
 use super::look::{WakePlane, WallSnapshot, hinge_moments, pressure_load, tip_vortex, totals};
 use super::record::family;
 use super::record::summary::{Clock, FILES, FreeStream, Ledger, Reclouding, Summary};
@@ -219,10 +219,8 @@ impl<const D: usize> Found<'_, D> {
     }
 
     /// Loads of pressure and friction on the interface particles chosen.
-    pub(crate) fn wall_loads(&self, chosen: impl Fn(usize) -> bool) -> (Load, Load) {
-        let mut friction = Load::default();
-        add_friction(&self.view, &self.axes, &chosen, &mut friction);
-        (pressure_load(&self.view, &self.axes, &chosen), friction)
+    pub(crate) fn wall_loads(&self, chosen: impl Fn(usize) -> bool + Sync) -> (Load, Load) {
+        (pressure_load(&self.view, &self.axes, &chosen), friction_load(&self.view, &self.axes, &chosen))
     }
 
     /// Distances of the interface particles from the nose, over the extent of the bodies.

@@ -18,6 +18,7 @@ use super::understood::{Aeroelastic, Understood};
 use crate::case::{Case, GafMethod};
 use crate::cloud::layout::{capped, count};
 use crate::cloud::{Cloud, CloudSpec, Diagnosis};
+use crate::math::reduce::maximum;
 use crate::observe::table::write_json;
 use crate::observe::vtk::{Column, write_cells};
 use crate::problem::solids::{told_of_own_modes, with_gas};
@@ -158,7 +159,7 @@ fn look<const D: usize>(
     let fastest = || {
         let mut rate = vec![0.0; fluid.discretisation.cloud.n_fluid];
         fluid.rates(&frame, u, &mut fluid.work(), &mut rate);
-        rate.iter().fold(0.0f64, |m, r| m.max(*r))
+        maximum(rate.len(), |i| rate[i])
     };
     let cloud = &fluid.discretisation.cloud;
     let n_fluid = (cloud.n_fluid as f64 * seen.more).round() as usize;

@@ -16,8 +16,9 @@ use std::ops::Range;
 use crate::math::fourier::Instances;
 use crate::math::krylov::Numbers;
 use crate::math::multilevel::Cycle;
+use crate::math::parallel::sweep_slots;
+use crate::math::reduce::norm;
 use crate::math::sparse::Symmetric;
-use crate::math::sweep::{norm, sweep_slots};
 
 /// Change of the state in derivatives that are differences, over its size.
 const DIFFERENCE: f64 = 1e-6;

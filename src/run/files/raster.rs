@@ -1,6 +1,6 @@
 //! The flow on a grid of pixels in a plane, by the solver's own fit.
 use super::target::Scene;
-use crate::math::sweep::{sweep_each, sweep_each_chunk};
+use crate::math::parallel::{sweep_each, sweep_each_chunk};
 use crate::math::{Bounds, Vector};
 use crate::physics::Primitive;
 use crate::problem::RunError;

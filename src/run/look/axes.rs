@@ -1,13 +1,13 @@
 //! Axes of loads, and the gas at one moment seen in them.
-use super::friction::add_friction;
+use super::friction::friction_load;
 use crate::case::Case;
 use crate::cloud::CloudSpec;
 use crate::geometry::{Planform, Surface};
 use crate::math::jet::Jet;
-use crate::math::sweep::sum;
+use crate::math::reduce::{sum, sums};
 use crate::math::{Bounds, Vector};
 use crate::motion::BodyMotion;
-use crate::observe::loads::{Coefficients, Load, LoadAxes};
+use crate::observe::loads::{Coefficients, Load, LoadAxes, together};
 use crate::problem::reference::planform;
 use crate::scheme::start::{free_stream, stream_axes};
 use crate::scheme::{Fluid, Frame, HasGas, View, Work};
@@ -140,9 +140,8 @@ impl LoadFrame {
     /// Coefficients of all bodies, from the wall states and with friction the gradients.
     pub(crate) fn coefficients<const D: usize>(&self, view: &View<'_, D>) -> Coefficients {
         let axes = self.axes(view);
-        let mut load = pressure_load(view, &axes, |_| true);
-        add_friction(view, &axes, |_| true, &mut load);
-        axes.coefficients(&load)
+        let [pressure, friction] = [pressure_load(view, &axes, |_| true), friction_load(view, &axes, |_| true)];
+        axes.coefficients(&together(&pressure, &friction))
     }
 }
 
@@ -150,11 +149,25 @@ impl LoadFrame {
 pub(crate) fn pressure_load<const D: usize>(
     view: &View<'_, D>,
     axes: &LoadAxes,
-    chosen: impl Fn(usize) -> bool,
+    chosen: impl Fn(usize) -> bool + Sync,
 ) -> Load {
-    let mut load = Load::default();
-    for (w, i) in view.cloud().interface_range().enumerate().filter(|(w, _)| chosen(*w)) {
-        axes.add(&mut load, &view.place(i).to_3d(), &view.pressure_force(w).to_3d());
-    }
-    load
+    load_on_walls(view, axes, |w| chosen(w).then(|| view.pressure_force(w)))
+}
+
+/// Load of the forces `force(w)` on interface particles.
+pub(crate) fn load_on_walls<const D: usize>(
+    view: &View<'_, D>,
+    axes: &LoadAxes,
+    force: impl Fn(usize) -> Option<Vector<D>> + Sync,
+) -> Load {
+    let first = view.cloud().interface_range().start;
+    let [x, y, z, moment] = sums(view.cloud().interface.len(), |w| {
+        let mut load = Load::default();
+        if let Some(force) = force(w) {
+            axes.add(&mut load, &view.place(first + w).to_3d(), &force.to_3d());
+        }
+        let [x, y, z] = load.force;
+        [x, y, z, load.moment]
+    });
+    Load { force: [x, y, z], moment }
 }

@@ -15,6 +15,7 @@ use crate::case::{AnyMode, Case, Mode};
 use crate::geometry::Surface;
 use crate::math::Vector;
 use crate::math::fourier::Series;
+use crate::math::reduce::sum;
 use crate::motion::Motions;
 use crate::observe::loads::{Load, LoadAxes};
 use crate::scheme::{Fluid, View, Work};
@@ -83,22 +84,25 @@ impl<const D: usize> ForceModes<D> {
     fn at(&self, view: &View<'_, D>) -> Vec<f64> {
         let axes = self.axes.axes(view);
         let forces = wall_forces(view);
-        let chosen = || forces.iter().enumerate().filter(|(w, _)| self.follows[*w]);
+        let over = |of: &(dyn Fn(usize, &Vector<D>) -> f64 + Sync)| {
+            sum(forces.len(), |w| if self.follows[w] { of(w, &forces[w].1) } else { 0.0 })
+        };
         let length = self.length.unwrap_or(0.5 * axes.chord);
         let one = |(_, form): &(String, Form<D>)| {
             let work = match form {
-                Form::Plunge => chosen().map(|(_, (_, f))| length * f[D - 1]).sum::<f64>(),
+                Form::Plunge => over(&|_, f| length * f[D - 1]),
                 Form::Pitch(pivot) => {
                     let moment_point = view.carried(0, pivot).to_3d();
                     let axes = LoadAxes { moment_point, ..axes.clone() };
-                    let mut load = Load::default();
-                    chosen().for_each(|(_, (x, f))| axes.add(&mut load, &x.to_3d(), &f.to_3d()));
-                    load.moment
+                    over(&|w, f| {
+                        let mut load = Load::default();
+                        axes.add(&mut load, &forces[w].0.to_3d(), &f.to_3d());
+                        load.moment
+                    })
                 }
                 Form::Bend(shifts) => {
                     let body = |w: usize| usize::from(view.cloud().interface[w].body);
-                    let turned = |w: usize| view.carried_direction(body(w), &shifts[w]);
-                    chosen().map(|(w, (_, f))| turned(w).dot(f)).sum()
+                    over(&|w, f| view.carried_direction(body(w), &shifts[w]).dot(f))
                 }
             };
             if axes.force_scale > 0.0 { work / (axes.force_scale * axes.chord) } else { 0.0 }

@@ -1,6 +1,7 @@
 //! What the gas does to the walls it sticks to: friction, heat, separation.
 use serde::Serialize;
 
+use super::axes::load_on_walls;
 use crate::case::Case;
 use crate::math::Vector;
 use crate::observe::loads::{Load, LoadAxes};
@@ -29,19 +30,16 @@ pub(crate) struct WallFriction {
     pub(crate) y_plus: f64,
 }
 
-/// Adds the load of the viscous stress on the interface particles chosen to `load`.
-pub(crate) fn add_friction<const D: usize>(
+/// Load of the viscous stress on the interface particles chosen.
+pub(crate) fn friction_load<const D: usize>(
     view: &View<'_, D>,
     axes: &LoadAxes,
-    chosen: impl Fn(usize) -> bool,
-    load: &mut Load,
-) {
-    let cloud = view.cloud();
-    for w in (0..cloud.interface.len()).filter(|w| chosen(*w)) {
-        if let Some(force) = view.friction_force(w) {
-            axes.add(load, &view.place(cloud.n_fluid + w).to_3d(), &force.to_3d());
-        }
+    chosen: impl Fn(usize) -> bool + Sync,
+) -> Load {
+    if view.fluid.viscous_model.is_none() {
+        return Load::default();
     }
+    load_on_walls(view, axes, |w| if chosen(w) { view.friction_force(w) } else { None })
 }
 
 /// Friction on every interface particle; `None` for an inviscid gas.

@@ -9,7 +9,7 @@ use std::collections::BTreeMap;
 use super::wall_weights::WallWeights;
 use super::{Snapshot, WallSnapshot};
 use crate::geometry::Surface;
-use crate::math::sweep::sweep_each;
+use crate::math::parallel::sweep_each;
 use crate::math::{Bounds, Vector};
 use crate::scheme::View;
 

@@ -1,8 +1,9 @@
 //! Loads from the momentum of the gas around the bodies: the second evaluation that every run reports.
 use super::axes::{GasView, LoadFrame};
 use crate::case::{Case, Side};
+use crate::math::reduce::{maximum, sums};
 use crate::math::{Bounds, Vector};
-use crate::observe::loads::Balance as Sum;
+use crate::observe::loads::{Balance as Sum, Load, LoadAxes};
 use crate::scheme::balance::{Balance, Part, SidePiece};
 use crate::scheme::probe::Probe;
 use crate::scheme::start::free_stream;
@@ -34,28 +35,29 @@ pub(crate) fn around<const D: usize>(
     }
     let view = gas.seen(work);
     let balance = Balance::new(free_stream(case), view)?;
-    let mut sum = Sum::default();
     let axes = axes.axes(&view);
-    let mut add = |p: Part<D>| {
-        axes.add(&mut sum.load, &p.x.to_3d(), &p.force.to_3d());
-        axes.turn(&mut sum.load, &p.carried[0].to_3d(), &p.carried[1].to_3d());
-        axes.twist(&mut sum.load, &p.couple.to_3d());
-        sum.mass += p.mass;
-        sum.energy += p.energy;
-        sum.passed[0] += p.passed[0];
-        sum.passed[1] += p.passed[1];
-    };
     let planes = planes(case, &view, &balance.zone.bounds());
     let (mut cut, passing): (Vec<_>, Vec<_>) = balance.through_sides().into_iter().unzip();
     cut.extend(planes.iter().flatten());
-    balance.parts(&rate, planes.is_some().then_some(&cut)).into_iter().chain(passing).for_each(&mut add);
+    let mut parts = balance.parts(&rate, planes.is_some().then_some(&cut));
+    parts.extend(passing);
     let probe = Probe::new(view, None);
-    for piece in planes.iter().flatten() {
-        if let Some(q) = probe.at(&piece.x) {
-            add(balance.pressed(piece, q.pressure));
-        }
-    }
-    Some(sum)
+    let pressed = |piece: &SidePiece<D>| Some(balance.pressed(piece, probe.at(&piece.x)?.pressure));
+    parts.extend(planes.iter().flatten().filter_map(pressed));
+    Some(sum_of(&parts, &axes))
+}
+
+/// Sum of all parts.
+fn sum_of<const D: usize>(parts: &[Part<D>], axes: &LoadAxes) -> Sum {
+    let [x, y, z, moment, mass, energy, inward, outward] = sums(parts.len(), |k| {
+        let (p, mut load) = (&parts[k], Load::default());
+        axes.add(&mut load, &p.x.to_3d(), &p.force.to_3d());
+        axes.turn(&mut load, &p.carried[0].to_3d(), &p.carried[1].to_3d());
+        axes.twist(&mut load, &p.couple.to_3d());
+        let [x, y, z] = load.force;
+        [x, y, z, load.moment, p.mass, p.energy, p.passed[0], p.passed[1]]
+    });
+    Sum { load: Load { force: [x, y, z], moment }, mass, energy, passed: [inward, outward] }
 }
 
 /// The planes of symmetry that cut the zone, in tiles outside the bodies. `None` where sides that do are periodic: what passes one of
@@ -108,7 +110,7 @@ impl<const D: usize> Rim<D> {
         };
         let beside = |w: &(Vector<D>, Vector<D>, f64)| (w.0[axis] - end).abs() < RIM * w.2;
         let walls: Vec<_> = cloud.interface_range().map(wall).filter(beside).collect();
-        let widest = walls.iter().map(|w| w.2).fold(0.0, f64::max);
+        let widest = maximum(walls.len(), |k| walls[k].2);
         let places: Vec<_> = walls.iter().map(|w| w.0).collect();
         Self { axis, around: Bounds::around(&places).padded(RIM * widest), walls }
     }

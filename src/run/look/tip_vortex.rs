@@ -9,7 +9,7 @@ use serde::Serialize;
 use super::symmetry::side_of_symmetry;
 use crate::case::Case;
 use crate::geometry::Surface;
-use crate::math::sweep::sweep_each;
+use crate::math::parallel::sweep_each;
 use crate::math::{Bounds, Vector};
 use crate::scheme::View;
 use crate::scheme::probe::{Near, Probe};

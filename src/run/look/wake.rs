@@ -20,7 +20,7 @@ use super::momentum::tile;
 use super::symmetry::side_of_symmetry;
 use crate::case::Case;
 use crate::geometry::Surface;
-use crate::math::sweep::sweep;
+use crate::math::reduce::sums;
 use crate::math::{Bounds, Vector};
 use crate::observe::loads::LoadAxes;
 use crate::physics::Primitive;
@@ -106,10 +106,8 @@ impl<const D: usize> Wake<'_, D> {
     fn plane(&self, distance: f64, x: f64, domain: &Bounds<D>) -> WakePlane {
         let mut tiles: Vec<(Vector<D>, Vector<D>)> = Vec::new();
         tile(self.view, domain, (0, x), &mut |middle, extent| tiles.push((middle, extent)));
-        let mut parts = vec![[0.0; 3]; tiles.len()];
-        sweep(&mut parts, |k| self.tile(&tiles[k]).unwrap_or_default());
-        let sum = |k: usize| parts.iter().map(|p| p[k]).sum::<f64>() / self.axes.force_scale;
-        let [cl, cd_induced, cd_entropy] = [0, 1, 2].map(sum);
+        let all = sums(tiles.len(), |k| self.tile(&tiles[k]).unwrap_or_default());
+        let [cl, cd_induced, cd_entropy] = all.map(|sum| sum / self.axes.force_scale);
         WakePlane { distance, x, cl, cd_induced, cd_entropy, cd: cd_induced + cd_entropy }
     }
 

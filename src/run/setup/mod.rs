@@ -86,7 +86,7 @@ fn transfer_one<S: HasGas<D>, const D: usize>(
     let probe = Probe::before_motion(old.view(frame, gas, &mut work), surface);
     let mut u = next.gas().start();
     let cloud = &next.gas().discretisation.cloud;
-    crate::math::sweep::sweep_rows(&mut u, n_variables(D), |i, row| {
+    crate::math::parallel::sweep_rows(&mut u, n_variables(D), |i, row| {
         let found = probe.at(&cloud.x[i]).filter(crate::physics::Primitive::is_physical);
         if let Some(q) = found {
             let c: Conserved<D> = old.gas.conserved(&q);

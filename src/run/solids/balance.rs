@@ -9,6 +9,7 @@ use super::record::{PeriodicRow, ProbeHarmonic, Row, Work};
 use super::saved::{Saved, Sought};
 use crate::case::{HarmonicCount, Harmonics};
 use crate::math::fourier::Instances;
+use crate::math::reduce::sum;
 use crate::problem::RunError;
 use crate::problem::solids::Built;
 use crate::solid::Structure;
@@ -277,18 +278,17 @@ impl<'s, const D: usize> Balance<'s, '_, D> {
         let solid = &self.study.built.structure.solid;
         let mut force = vec![[0.0; D]; solid.len()];
         solid.outside(at, &mut force);
-        let all = || (0..solid.len()).flat_map(|i| (0..D).map(move |a| (i, a)));
-        let power = |f: &[[f64; D]], (i, a): (usize, usize)| f[i][a] * at.velocity[i][a];
-        let loads = all().filter(|(i, a)| !solid.is_held(*i, *a)).map(|k| power(&force, k)).sum();
+        let free = |i: usize, a: usize| if solid.is_held(i, a) { 0.0 } else { force[i][a] * at.velocity[i][a] };
+        let loads = sum(solid.len(), |i| (0..D).map(|a| free(i, a)).sum());
         let mut supports = 0.0;
         if solid.is_moved() {
             let (mut storage, mut scratch) = (solid.work(), vec![0.0; at.history.len()]);
             solid.stress(at, &mut storage, &mut scratch);
             solid.forces(at, &storage, &mut force);
-            for (i, a) in all().filter(|(i, a)| solid.is_held(*i, *a)) {
-                let inertia = solid.mass()[i] * motion.acceleration[i * D + a];
-                supports += (inertia - force[i][a]) * at.velocity[i][a];
-            }
+            let inertia = |i: usize, a: usize| solid.mass()[i] * motion.acceleration[i * D + a];
+            let power = |i: usize, a: usize| (inertia(i, a) - force[i][a]) * at.velocity[i][a];
+            let held = |i: usize, a: usize| if solid.is_held(i, a) { power(i, a) } else { 0.0 };
+            supports = sum(solid.len(), |i| (0..D).map(|a| held(i, a)).sum());
         }
         [loads, supports, solid.damped(at)]
     }

@@ -8,6 +8,7 @@ use super::record::{PeriodicRow, ProbeHarmonic, Row, Work};
 use super::saved::{Saved, Standing};
 use crate::case::{Case, Temporal};
 use crate::math::Vector;
+use crate::math::reduce::sum;
 use crate::problem::RunError;
 use crate::problem::solids::Built;
 use crate::solid::Structure;
@@ -210,10 +211,9 @@ impl<const D: usize> Study<'_, D> {
         let state = self.state(mark.time, integrator.standing().state);
         let outside = &after.outside;
         let moved = |i: usize, a: usize| state.displacement[i][a] - before.displacement[i][a];
-        let all = (0..solid.len()).flat_map(|i| (0..D).map(move |a| (i, a)));
-        let of = |(i, a): (usize, usize)| 0.5 * (outside[i][a] + before.outside[i][a]) * moved(i, a);
-        let free = |(i, a): &(usize, usize)| !solid.is_held(*i, *a);
-        work.loads += all.filter(free).map(of).sum::<f64>();
+        let by_loads = |i: usize, a: usize| 0.5 * (outside[i][a] + before.outside[i][a]) * moved(i, a);
+        let free = |i: usize, a: usize| if solid.is_held(i, a) { 0.0 } else { by_loads(i, a) };
+        work.loads += sum(solid.len(), |i| (0..D).map(|a| free(i, a)).sum());
         if !matches!(self.case.time, Temporal::Steady(_) | Temporal::Modes(_)) {
             work.damped += 0.5 * mark.last * (before.damped + after.damped);
         }
@@ -224,9 +224,8 @@ impl<const D: usize> Study<'_, D> {
             let mut force = vec![[0.0; D]; solid.len()];
             solid.stress(&state, &mut storage, &mut scratch);
             solid.forces(&state, &storage, &mut force);
-            let held =
-                (0..solid.len()).flat_map(|i| (0..D).map(move |a| (i, a))).filter(|(i, a)| solid.is_held(*i, *a));
-            work.supports -= held.map(|(i, a)| force[i][a] * moved(i, a)).sum::<f64>();
+            let held = |i: usize, a: usize| if solid.is_held(i, a) { force[i][a] * moved(i, a) } else { 0.0 };
+            work.supports -= sum(solid.len(), |i| (0..D).map(|a| held(i, a)).sum());
         }
         after
     }

@@ -11,7 +11,7 @@ use super::settled::{PeriodicEyes, Settled};
 use super::turn::{Reached, Start, Turn};
 use crate::case::Harmonics;
 use crate::math::fourier::{Instances, Series};
-use crate::math::sweep::sum;
+use crate::math::reduce::sum;
 use crate::physics::n_variables;
 use crate::problem::RunError;
 use crate::problem::numerics::{harmonic_control, is_automatic};

@@ -9,7 +9,7 @@ use super::super::look::{GasView, Held, LoadFrame, Mesh, Rim};
 use super::steady::is_supersonic;
 use super::swing::{Flow, swing};
 use crate::coupling::{Attached, Marches};
-use crate::math::sweep::norm;
+use crate::math::reduce::norm;
 use crate::scheme::Fluid;
 use crate::structure::limit_cycle::Periodic;
 use crate::structure::{Matrices, Spring};

@@ -10,6 +10,7 @@ use super::turn::{Reached, Start, Turn};
 use crate::case::{Accuracy, Case, Side, Steady};
 use crate::cloud::CloudSpec;
 use crate::math::Bounds;
+use crate::math::reduce::first;
 use crate::observe::convergence::CloudLoads;
 use crate::observe::loads::Coefficients;
 use crate::problem::RunError;
@@ -222,8 +223,8 @@ fn is_lossless<const D: usize>(gas: &Fluid<D>, case: &Case) -> bool {
 
 /// True where the gas is faster than sound somewhere, whose states `work` holds.
 pub(super) fn is_supersonic<const D: usize>(gas: &Fluid<D>, work: &Work<D>) -> bool {
-    let n = gas.discretisation.cloud.n_fluid;
-    work.state[..n].iter().any(|q| q.velocity.norm() > gas.gas.sound_speed(q))
+    let fast = |i: usize| work.state[i].velocity.norm() > gas.gas.sound_speed(&work.state[i]);
+    first(gas.discretisation.cloud.n_fluid, fast).is_some()
 }
 
 /// What the last iteration changed the loads by; half of their range over the last iterations where the residual did not reach its

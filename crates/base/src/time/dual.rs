@@ -7,7 +7,8 @@ use super::formula::Formula;
 use super::relax::{Relax, TimeTerm};
 use super::{CROWDED, Cost, Integrator, Mark, Memory, Past, Standing, Step, TimeError};
 use crate::math::multilevel::Cycle;
-use crate::math::sweep::{sum, sweep};
+use crate::math::parallel::sweep;
+use crate::math::reduce::sum;
 use crate::system::{Implicit, Instant, Reach};
 
 /// Greatest ratio of successive steps.

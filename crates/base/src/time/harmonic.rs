@@ -12,7 +12,7 @@
 use std::ops::Range;
 
 use crate::math::fourier::{Instances, Matrix};
-use crate::math::sweep::sweep_rows;
+use crate::math::parallel::sweep_rows;
 use crate::system::{
     Fault, Field, Hierarchy, Implicit, Instant, Period, Placed, Preconditioner, RightHandSide, Shift, System, Term,
     placed,

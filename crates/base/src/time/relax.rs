@@ -18,7 +18,8 @@ use super::norm::{norm, weigh};
 use super::preconditioning::Preconditioning;
 use super::{Cost, Integrator, Mark, Memory, Standing, Step, TimeError};
 use crate::math::krylov::Gmres;
-use crate::math::sweep::{sweep, sweep_rows};
+use crate::math::parallel::{sweep, sweep_rows};
+use crate::math::reduce::largest;
 use crate::system::{Fault, Hierarchy, Implicit, Instant, Reach, Shift, placed, rows};
 
 /// Drop of the residual below which the flow counts as settled.
@@ -476,12 +477,11 @@ impl<'a, S: Implicit> Relax<'a, S> {
         let (mut worst, mut whose) = ((0, -1.0), String::new());
         for at in placed(self.system.fields()) {
             let (n, r, scale) = (at.field.block, &self.residual[at.unknowns], &self.scale[at.rows.clone()]);
-            for (i, row) in r.chunks_exact(n).enumerate() {
-                let size = row.iter().fold(0.0, |m: f64, r| m.max(r.abs())) * scale[i];
-                if size > worst.1 {
-                    worst = (at.rows.start + i, size);
-                    whose = format!("row {i} of the {}", at.field.name);
-                }
+            let size = |i: usize| r[i * n..(i + 1) * n].iter().map(|r| r.abs() * scale[i]).reduce(f64::max);
+            let found = largest(at.field.rows, |i| size(i).unwrap_or(0.0));
+            if let Some((i, size)) = found.filter(|(_, size)| *size > worst.1) {
+                worst = (at.rows.start + i, size);
+                whose = format!("row {i} of the {}", at.field.name);
             }
         }
         let place = self.system.locate(&self.frame, worst.0);

@@ -39,7 +39,8 @@ use super::operators::{Reverse, WallFace};
 use super::{Cloud, Operators};
 use crate::math::Vector;
 use crate::math::conjugate::{Row as _, Symmetric, conjugate_gradients};
-use crate::math::sweep::{sum, sweep, sweep_parts, sweep_slots};
+use crate::math::parallel::{sweep, sweep_parts, sweep_slots};
+use crate::math::reduce::sum;
 
 /// ε: square of the tolerated relative error of linear consistency against relative changes of s, in the measure of w and b;
 /// in 2-D and 3-D, where the errors of 0.02 would still be seen in the pressure on a sphere.

@@ -12,7 +12,7 @@ use super::Interface;
 use super::grid::Grid;
 use super::tree::Tree;
 use crate::geometry::{Chain, Surface};
-use crate::math::sweep::{order_by_key, sweep};
+use crate::math::parallel::{order_by_key, sweep};
 use crate::math::{Bounds, Vector};
 
 /// Spacing along the outline in cells of the background (2-D).

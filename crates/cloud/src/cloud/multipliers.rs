@@ -4,8 +4,8 @@
 //! axis, each with one number a component and room for four: kernels are then plain arithmetic of four numbers at a time.
 use crate::math::Vector;
 use crate::math::conjugate;
+use crate::math::parallel::sweep_rows;
 use crate::math::rounded::{of_upper_half, upper_half};
-use crate::math::sweep::sweep_rows;
 
 /// Smallest pivot of a block relative to its diagonal.
 const FLAT: f64 = 1e-12;

@@ -20,7 +20,7 @@ use super::Transform;
 use super::particles::Particles;
 use crate::geometry::Surface;
 use crate::math::Vector;
-use crate::math::sweep::sweep;
+use crate::math::parallel::sweep;
 
 /// Height of the first row in spacings: the middle of a cell that stands upright on the wall.
 const FIRST: f64 = 0.5;

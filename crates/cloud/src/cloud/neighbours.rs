@@ -12,7 +12,7 @@ use super::Transform;
 use super::layers::Source;
 use super::particles::Particles;
 use crate::geometry::Surface;
-use crate::math::sweep::{CHUNK, sweep_each, sweep_parts};
+use crate::math::parallel::{CHUNK, sweep_each, sweep_parts};
 use crate::math::{Bounds, Vector};
 
 /// Pairs with a member nearer than this many spacings to a wall follow the ball rule.

@@ -10,7 +10,7 @@ use crate::cloud::{Cloud, Interface, Strain};
 use crate::math::Vector;
 use crate::math::jet::Jet;
 use crate::math::moving_fit::{Basis, weights};
-use crate::math::sweep::sweep_slots;
+use crate::math::parallel::sweep_slots;
 use crate::motion::{BodyMotion, Carried, Expansion, tangents};
 
 /// Interface particles around one that say how the surface bends there, in the plane and in space.

@@ -13,7 +13,7 @@ use crate::cloud::Cloud;
 use crate::math::Vector;
 use crate::math::dual::Dual;
 use crate::math::jet::Scalar;
-use crate::math::sweep::sweep_rows;
+use crate::math::parallel::sweep_rows;
 use crate::physics::{Gas, Primitive, n_variables};
 use crate::system::Field as Unknowns;
 

@@ -10,7 +10,7 @@
 //! is nearer to it than to the body, and these planes do not bound how far the motion reaches.
 use crate::cloud::Cloud;
 use crate::math::jet::Jet;
-use crate::math::sweep::sweep_slots;
+use crate::math::parallel::sweep_slots;
 use crate::math::{Bounds, Vector};
 use crate::motion::{BodyMotion, Carried, PointTrajectory, RigidPose, SurfaceNet};
 

@@ -1,7 +1,7 @@
 //! Walking over a surface: what the cloud needs to know where to be fine and where interface particles go.
 use super::surface::{Element, Surface};
 use crate::math::Vector;
-use crate::math::sweep::sweep_each;
+use crate::math::parallel::sweep_each;
 
 /// Elements that one task samples.
 const GROUP: usize = 256;

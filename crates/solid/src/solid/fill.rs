@@ -9,7 +9,7 @@ use super::weigh::{weigh_in_plane, weigh_in_space};
 use crate::cloud::grid::Grid;
 use crate::geometry::Surface;
 use crate::math::Vector;
-use crate::math::sweep::sweep_each;
+use crate::math::parallel::sweep_each;
 
 /// Particles inside begin no nearer to the surface than this, in spacings.
 const CLEAR: f64 = 0.6;

@@ -14,8 +14,9 @@ use crate::cloud::grid::Grid;
 use crate::math::Vector;
 use crate::math::conjugate::{Symmetric, conjugate_gradients};
 use crate::math::least_squares::{gradient_weight, normal_inverse, normal_matrix};
+use crate::math::parallel::{sweep, sweep_each};
+use crate::math::reduce::{first, maximum, sum};
 use crate::math::sparse;
-use crate::math::sweep::{first, maximum, sum, sweep, sweep_each};
 
 /// Radius of a cloud in spacings, in the plane and in space, where rows do not say who neighbours are: between the second and the
 /// third ring of a square and of a body-centred lattice, so that no diagonal of a sheared cell is lost.

@@ -6,7 +6,8 @@
 use super::body::Solid;
 use super::forces::State;
 use crate::math::Vector;
-use crate::math::sweep::{maximum, sum, sweep_slots};
+use crate::math::parallel::sweep_slots;
+use crate::math::reduce::{maximum, sum};
 
 /// Iterations, and what the estimate they end with, which is from below, is raised by.
 const ITERATIONS: usize = 60;

@@ -4,6 +4,7 @@ mod tests;
 
 use super::body::Solid;
 use super::forces::{State, Tangents, Work};
+use crate::math::reduce::{largest_size, minimum};
 use crate::math::sparse::Symmetric;
 use crate::system::{Damping, Fault, Field, Instant, Mechanical, Moment, System};
 
@@ -104,10 +105,8 @@ impl<const D: usize> System for Structure<D> {
     }
 
     fn largest_change(&self, _: &[f64], du: &[f64]) -> f64 {
-        let largest = du[..self.displacements()]
-            .iter()
-            .fold(0.0f64, |m, x| if x.is_finite() { m.max(x.abs()) } else { f64::INFINITY });
-        largest / self.solid.particles.spacing.iter().fold(f64::INFINITY, |a, b| a.min(*b))
+        let spacing = &self.solid.particles.spacing;
+        largest_size(self.displacements(), |k| du[k]) / minimum(spacing.len(), |i| spacing[i])
     }
 
     fn check(&self, _: &f64, u: &[f64]) -> Result<(), Fault> {

@@ -6,7 +6,8 @@
 use super::super::preconditioning::Preconditioning;
 use super::{Relax, TimeTerm};
 use crate::math::krylov::{Gmres, Goal, Numbers, System as Linear};
-use crate::math::sweep::{sum, sweep, sweep_rows};
+use crate::math::parallel::{sweep, sweep_rows};
+use crate::math::reduce::sum;
 use crate::system::{Implicit, Instant, Reach, RightHandSide, Shift, System, placed};
 
 /// Part of the fall that a step in time still needs which its next linear solve is asked for.

@@ -1,10 +1,9 @@
-//! The parallel loop.
+//! The parallel loops.
 //!
 //! Every loop over particles goes through this file. A loop gathers what it needs and writes its own slot, or owns one
-//! contiguous *part* of the output; sums run over chunks of a fixed size. The result is therefore the same bits for any
-//! number of threads.
+//! contiguous *part* of the output, so that the result is the same bits for any number of threads. Sums, norms and largest values over
+//! rows are in [`reduce`](super::reduce).
 use std::ops::Range;
-use std::sync::atomic::{AtomicU64, AtomicUsize, Ordering};
 
 use rayon::slice::ParallelSliceMut;
 
@@ -22,13 +21,13 @@ pub fn threads() -> usize {
 // run time costs nothing beside a chunk, and what the chunk holds is a plain loop, compiled for the formula inside it.
 
 /// Runs `a` and `b`, at the same time if a thread is free.
-fn both(a: &mut (dyn FnMut() + Send), b: &mut (dyn FnMut() + Send)) {
+pub(super) fn both(a: &mut (dyn FnMut() + Send), b: &mut (dyn FnMut() + Send)) {
     rayon::join(a, b);
 }
 
 /// Calls `f(k, piece)` for every piece of `width` values of `out`, the last of which may be shorter; `first` is the number of
 /// the first.
-fn each_piece<T: Send>(first: usize, width: usize, out: &mut [T], f: &(dyn Fn(usize, &mut [T]) + Sync)) {
+pub(super) fn each_piece<T: Send>(first: usize, width: usize, out: &mut [T], f: &(dyn Fn(usize, &mut [T]) + Sync)) {
     match out.len().div_ceil(width) {
         0 => {}
         1 => f(first, out),
@@ -40,7 +39,7 @@ fn each_piece<T: Send>(first: usize, width: usize, out: &mut [T], f: &(dyn Fn(us
 }
 
 /// Calls `f(c)` for every `c` in `from..to`.
-fn each_chunk(from: usize, to: usize, f: &(dyn Fn(usize) + Sync)) {
+pub(super) fn each_chunk(from: usize, to: usize, f: &(dyn Fn(usize) + Sync)) {
     match to - from {
         0 => {}
         1 => f(from),
@@ -162,54 +161,6 @@ pub fn parts(n: usize, size: usize) -> Vec<Range<usize>> {
     (0..count).map(|k| k * n / count..(k + 1) * n / count).collect()
 }
 
-/// Sum of `f(i)` over `0..n`: chunk sums of fixed size, added in order.
-pub fn sum(n: usize, f: impl Fn(usize) -> f64 + Sync) -> f64 {
-    let chunk = |c: usize| abreast(c * CHUNK..((c + 1) * CHUNK).min(n), &f);
-    pairwise(0, n.div_ceil(CHUNK), &chunk)
-}
-
-/// Sum of `f(i)` over a range, every eighth term together: additions that need not wait for one another.
-#[inline(always)]
-pub fn abreast(range: Range<usize>, f: &impl Fn(usize) -> f64) -> f64 {
-    let mut sums = [0.0; 8];
-    let whole = range.start + range.len() / 8 * 8;
-    for start in (range.start..whole).step_by(8) {
-        for (k, sum) in sums.iter_mut().enumerate() {
-            *sum += f(start + k);
-        }
-    }
-    for (i, sum) in (whole..range.end).zip(&mut sums) {
-        *sum += f(i);
-    }
-    let [a, b, c, d, e, f, g, h] = sums;
-    ((a + b) + (c + d)) + ((e + f) + (g + h))
-}
-
-/// Sum of `value(k)` over `from..to` in a fixed tree.
-fn pairwise(from: usize, to: usize, value: &(dyn Fn(usize) -> f64 + Sync)) -> f64 {
-    match to - from {
-        0 => 0.0,
-        1 => value(from),
-        n => {
-            let middle = from + n / 2;
-            let (mut a, mut b) = (0.0, 0.0);
-            both(&mut || a = pairwise(from, middle, value), &mut || b = pairwise(middle, to, value));
-            a + b
-        }
-    }
-}
-
-/// As many sums at once as `total` has slots: `f` sets those of a range of indices; chunks of fixed size are added in order.
-/// `chunks` is storage.
-pub fn sum_each(n: usize, total: &mut [f64], chunks: &mut Vec<f64>, f: impl Fn(Range<usize>, &mut [f64]) + Sync) {
-    let width = total.len();
-    chunks.clear();
-    chunks.resize(n.div_ceil(CHUNK) * width, 0.0);
-    each_piece(0, width.max(1), chunks, &|c, out| f(c * CHUNK..n.min((c + 1) * CHUNK), out));
-    total.fill(0.0);
-    chunks.chunks_exact(width.max(1)).for_each(|c| total.iter_mut().zip(c).for_each(|(t, c)| *t += c));
-}
-
 /// Calls `f(range, slots)` for consecutive slots of `out`, a chunk at a time.
 pub fn sweep_chunks<T: Send>(out: &mut [T], f: impl Fn(Range<usize>, &mut [T]) + Sync) {
     each_piece(0, CHUNK, out, &|c, chunk| f(c * CHUNK..c * CHUNK + chunk.len(), chunk));
@@ -225,55 +176,9 @@ pub fn fill<T: Copy + Send + Sync>(out: &mut [T], value: T) {
     sweep_chunks(out, |_, out| out.fill(value));
 }
 
-/// The first of `0..n` for which `f` holds.
-pub fn first(n: usize, f: impl Fn(usize) -> bool + Sync) -> Option<usize> {
-    let found = AtomicUsize::new(usize::MAX);
-    each_chunk(0, n.div_ceil(CHUNK), &|c| {
-        // what lies behind one that was found need not be asked
-        if c * CHUNK < found.load(Ordering::Relaxed)
-            && let Some(i) = (c * CHUNK..((c + 1) * CHUNK).min(n)).find(|i| f(*i))
-        {
-            found.fetch_min(i, Ordering::Relaxed);
-        }
-    });
-    Some(found.into_inner()).filter(|i| *i < n)
-}
-
-/// Largest of `f(i)` over `0..n`, at least zero.
-pub fn maximum(n: usize, f: impl Fn(usize) -> f64 + Sync) -> f64 {
-    // positive numbers are in the order of their bits
-    let largest = AtomicU64::new(0);
-    each_chunk(0, n.div_ceil(CHUNK), &|c| {
-        let chunk = (c * CHUNK..((c + 1) * CHUNK).min(n)).map(&f).fold(0.0, f64::max);
-        if chunk > 0.0 {
-            largest.fetch_max(chunk.to_bits(), Ordering::Relaxed);
-        }
-    });
-    f64::from_bits(largest.into_inner())
-}
-
-/// Inner product of two slices with a fixed order of summation.
-pub fn dot(a: &[f64], b: &[f64]) -> f64 {
-    sum(a.len(), |i| a[i] * b[i])
-}
-
-/// Euclidean norm with a fixed order of summation.
-pub fn norm(a: &[f64]) -> f64 {
-    dot(a, a).sqrt()
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn sums_do_not_depend_on_the_number_of_threads() {
-        let values: Vec<f64> = (0..100_000).map(|i| (i as f64 * 0.7).sin()).collect();
-        let pool = |n| rayon::ThreadPoolBuilder::new().num_threads(n).build().unwrap();
-        let one = pool(1).install(|| dot(&values, &values));
-        let four = pool(4).install(|| dot(&values, &values));
-        assert_eq!(one.to_bits(), four.to_bits());
-    }
 
     #[test]
     fn parts_cover_every_row_once() {
