@@ -23,4 +23,5 @@ pub use alula_solid::solid;
 pub mod coupling;
 pub mod problem;
 pub mod run;
+pub mod study;
 pub mod verify;

@@ -9,7 +9,7 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 
 /// Modules by floor: each may use strictly lower floors only.
-const FLOORS: [(&str, u8); 20] = [
+const FLOORS: [(&str, u8); 21] = [
     ("math", 0),
     ("case", 0),
     ("system", 1),
@@ -28,8 +28,9 @@ const FLOORS: [(&str, u8); 20] = [
     ("record", 5),
     ("report", 6),
     ("verify", 6),
-    ("run", 7),
-    ("lib", 8),
+    ("study", 7),
+    ("run", 8),
+    ("lib", 9),
 ];
 
 /// Modules that may use less than their floor allows.
@@ -47,7 +48,7 @@ const NARROW: [(&str, &[&str]); 10] = [
 ];
 
 /// Modules whose files use one another one way only.
-const ONE_WAY: [&str; 6] = ["case", "cloud", "scheme", "solid", "problem", "run"];
+const ONE_WAY: [&str; 7] = ["case", "cloud", "scheme", "solid", "problem", "study", "run"];
 
 /// Who may open files.
 const OPENS_FILES: [&str; 7] = [
