@@ -10,10 +10,9 @@ use alula::study::{self, PolarPoint};
 const CASE: &str = "
 [flow]
 mach = 0.3
+alpha = [\"-2 deg\", \"0 deg\", \"2 deg\", \"4 deg\"]
 [[body]]
 naca = \"0012\"
-[polar]
-alpha = [\"-2 deg\", \"0 deg\", \"2 deg\", \"4 deg\"]
 [cloud]
 spacing = 0.03
 far_field = 20

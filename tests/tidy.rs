@@ -410,6 +410,28 @@ fn the_book_is_whole() {
     );
 }
 
+/// Each of the twelve rows names a file that has what it says: a function, type or trait of that name.
+#[test]
+fn questions_lead_to_their_files() {
+    let text = read("ARCHITECTURE.md");
+    let table = text.split("## Where to look").nth(1).unwrap_or_default().split("\n## ").next().unwrap_or_default();
+    let rows: Vec<Vec<&str>> =
+        table.lines().filter(|l| l.contains('?')).map(|l| l.split('`').skip(1).step_by(2).collect()).collect();
+    assert_eq!(rows.len(), 12, "twelve questions");
+    let mut lost = Vec::new();
+    for row in &rows {
+        let [file, name] = row[..] else { panic!("a row without file and name: {row:?}") };
+        let there = root().join(file).is_file();
+        let kinds = ["fn", "struct", "trait", "enum"].map(|kind| format!("{kind} {name}"));
+        let ends = |rest: &str| !rest.starts_with(|c: char| c == '_' || c.is_alphanumeric());
+        let has = |kind: &String| code(file).split(kind.as_str()).skip(1).any(ends);
+        if !there || !kinds.iter().any(has) {
+            lost.push(format!("{file} has no `{name}`"));
+        }
+    }
+    assert_none(&lost, "ARCHITECTURE.md sends readers where nothing is");
+}
+
 #[test]
 fn architecture_names_every_module_on_its_floor() {
     let text = read("ARCHITECTURE.md");

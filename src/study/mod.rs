@@ -5,7 +5,7 @@
 //! | [`steady`] | a problem | the steady flow, [`SteadyFlow`]: loads, convergence, fields |
 //! | [`forces`] | a steady flow and reduced frequencies | [`GeneralisedForces`] on the coordinates of its structures |
 //! | [`flutter`](fn@flutter), [`limit_cycle`] | a problem with `[flutter]`, `[lco]` | the boundary, the cycles |
-//! | [`polar`], [`family`] | a problem with `[polar]`, with `[accuracy]` | its points, how the loads converge |
+//! | [`polar`], [`family`] | a problem with several angles of attack, with `[accuracy]` | its points, how the loads converge |
 //! | [`march`], [`harmonic`] | a problem with `[time]` | its [`Solution`] |
 //! | [`solid`] | a problem without `[flow]` | [`SolidSolution`] |
 //!

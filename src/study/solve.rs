@@ -57,14 +57,18 @@ pub fn solid_with(problem: &Problem, monitor: &mut dyn Monitor) -> Result<Option
     })
 }
 
-/// The points of a problem with `[polar]`, all angles of attack at the first Mach number, then all at the next.
+/// The points of a problem with several angles of attack or Mach numbers in `[flow]`, all angles of attack at the first Mach number, then all at the next.
 pub fn polar(problem: &Problem) -> Result<Vec<PolarPoint>, RunError> {
     polar_with(problem, &mut Silent)?.ok_or(RunError::NoStage)
 }
 
 /// The points of a polar under the eyes of `monitor`; `None` when that says stop.
 pub fn polar_with(problem: &Problem, monitor: &mut dyn Monitor) -> Result<Option<Vec<PolarPoint>>, RunError> {
-    refuse(problem.case().polar.is_none(), "a polar of a case without `[polar]`", "add `[polar]` with `alpha`")?;
+    refuse(
+        problem.case().polar.is_none(),
+        "a polar of a case with one angle of attack",
+        "give several: `flow.alpha = [\"0 deg\", \"2 deg\"]`",
+    )?;
     Ok(solved(problem, monitor)?.map(|solution| solution.summary.polar))
 }
 

@@ -52,7 +52,7 @@ pub fn steady_with<'a>(problem: &Problem, monitor: &'a mut dyn Monitor) -> Resul
     super::refuse(
         case.is_unsteady() || case.polar.is_some() || !case.has_gas(),
         "a steady flow of a case that asks for something else",
-        "leave out `[time]` but for `[time.steady]`, and `[polar]`, or call `study::march`, `harmonic`, `polar` or `solid`",
+        "call `study::polar` for several angles of attack, `march` or `harmonic` with `[time]`, `solid` without `[flow]`",
     )?;
     let held = case.flutter.is_some() && !problem.given().is_trimmed();
     let way = Way { held, ..Way::of(Origin::Case) };

@@ -1,6 +1,7 @@
-//! Marching and equilibrium of structures alone: the loop, what is recorded on the way, and checkpoints.
+//! Marching and equilibrium of structures alone: what is recorded on the way, and checkpoints.
 use super::super::monitor::{MarchTick, Monitor, Tick};
 use super::super::time_left::Portion;
+use super::super::watch::{Ending, Now, Observer, Wish, drive};
 use super::keeper::{SolidKeeper, Standing};
 use super::pace::Pace;
 use super::record::{PeriodicRow, ProbeHarmonic, Row, Work};
@@ -12,7 +13,7 @@ use crate::solid::Structure;
 use crate::solid::forces::State;
 use crate::time::structural::{Equilibrium, GeneralisedAlpha, LoadPlan, Newton, Plan};
 use crate::time::symplectic::{self, Symplectic};
-use crate::time::{Integrator, Mark, Memory, Past};
+use crate::time::{Integrator, Mark, Memory, Past, Step};
 
 /// Rows of `history.csv`, about.
 const ROWS: f64 = 1000.0;
@@ -96,39 +97,30 @@ impl<const D: usize> Study<'_, D> {
     /// Marches from the state `u`, or from where a checkpoint has it.
     pub(crate) fn march(&self, u: Vec<f64>, monitor: &mut dyn Monitor) -> Result<Marched, RunError> {
         let before = self.keeper.map_or(Ok(None), |keeper| keeper.standing(self.case, self.built))?;
-        let Standing { past, u, mut rows, mut work } = match before {
+        let Standing { past, u, mut rows, work } = match before {
             Some(standing) => standing,
             None => Standing { past: Past::default(), u, rows: Vec::new(), work: Work::default() },
         };
-        let mut pace = Pace::new(&self.case.output, u64::from(past.iteration));
+        let pace = Pace::new(&self.case.output, u64::from(past.iteration));
         let mut integrator = self.integrator(past, u);
         if rows.is_empty() {
-            rows.push(self.row(integrator.as_mut(), &work));
+            rows.push(self.row(&mut Now::at(integrator.as_mut()), &work));
         }
-        let mut stopped = false;
-        let mut before = self.before(integrator.as_mut());
-        while !integrator.finished() && !stopped {
-            if let Err(problem) = integrator.advance() {
-                self.keep(integrator.as_mut(), &rows, &work)?;
-                self.history(&rows)?;
-                let checkpoint = self.keeper.map(SolidKeeper::checkpoint_name);
-                return Err(RunError::Time { source: Box::new(problem), reached: String::new(), checkpoint });
-            }
-            before = self.add_work(integrator.as_mut(), &before, &mut work);
-            let mark = integrator.mark();
-            if self.is_recorded(&mark) {
-                rows.push(self.row(integrator.as_mut(), &work));
-                monitor.tick(&self.tick(&mark));
-            }
-            self.frame(integrator.as_mut(), mark.time, mark.last)?;
-            stopped = monitor.stop();
-            let step = u64::from(mark.iteration);
-            if stopped || monitor.checkpoint() || pace.is_due(step) {
-                pace.write(step, || self.keep(integrator.as_mut(), &rows, &work))?;
-            }
-        }
+        let mut log = SolidLog { study: self, rows, work, monitor };
+        let mut energies = Energies { before: self.before(&mut Now::at(integrator.as_mut())) };
+        let mut checkpoint = SolidCheckpoint { pace };
+        let all: &mut [&mut dyn Observer<_, SolidLog<'_, D>>] =
+            &mut [&mut energies, &mut History, &mut Frames, &mut checkpoint];
+        let ending = drive(integrator.as_mut(), all, &mut log)?;
+        let rows = log.rows;
         self.history(&rows)?;
-        Ok(self.ended(integrator.as_mut(), rows, stopped))
+        match ending {
+            Ending::Failed(problem) => {
+                let checkpoint = self.keeper.map(SolidKeeper::checkpoint_name);
+                Err(RunError::Time { source: Box::new(problem), reached: String::new(), checkpoint })
+            }
+            ending => Ok(self.ended(integrator.as_mut(), rows, matches!(ending, Ending::Stopped))),
+        }
     }
 
     /// Hands the history over.
@@ -186,9 +178,9 @@ impl<const D: usize> Study<'_, D> {
         self.structure().state(time, u)
     }
 
-    fn before(&self, integrator: &mut (dyn Integrator<Structure<D>> + '_)) -> Before<D> {
-        let time = integrator.mark().time;
-        let u = integrator.standing().state;
+    fn before(&self, now: &mut Now<'_, Structure<D>>) -> Before<D> {
+        let time = now.mark().time;
+        let u = now.standing().state;
         let state = self.state(time, u);
         let solid = &self.structure().solid;
         let mut outside = vec![[0.0; D]; solid.len()];
@@ -197,16 +189,11 @@ impl<const D: usize> Study<'_, D> {
     }
 
     /// Adds the work of a step by the mean of the forces at its ends; what the next step begins with.
-    fn add_work(
-        &self,
-        integrator: &mut (dyn Integrator<Structure<D>> + '_),
-        before: &Before<D>,
-        work: &mut Work,
-    ) -> Before<D> {
-        let mark = integrator.mark();
-        let after = self.before(integrator);
+    fn add_work(&self, now: &mut Now<'_, Structure<D>>, before: &Before<D>, work: &mut Work) -> Before<D> {
+        let mark = now.mark();
+        let after = self.before(now);
         let solid = &self.structure().solid;
-        let state = self.state(mark.time, integrator.standing().state);
+        let state = self.state(mark.time, now.standing().state);
         let outside = &after.outside;
         let moved = |i: usize, a: usize| state.displacement[i][a] - before.displacement[i][a];
         let all = (0..solid.len()).flat_map(|i| (0..D).map(move |a| (i, a)));
@@ -231,9 +218,9 @@ impl<const D: usize> Study<'_, D> {
     }
 
     /// What is recorded of a moment.
-    fn row(&self, integrator: &mut (dyn Integrator<Structure<D>> + '_), work: &Work) -> Row {
-        let mark = integrator.mark();
-        let state = self.state(mark.time, integrator.standing().state);
+    fn row(&self, now: &mut Now<'_, Structure<D>>, work: &Work) -> Row {
+        let mark = now.mark();
+        let state = self.state(mark.time, now.standing().state);
         let (energy, probes) = (self.structure().solid.energy(&state), self.probes(&state));
         let thickness = self.built.thickness;
         Row {
@@ -263,30 +250,99 @@ impl<const D: usize> Study<'_, D> {
     }
 
     /// A field file at times that the case asks for.
-    fn frame(
-        &self,
-        integrator: &mut (dyn Integrator<Structure<D>> + '_),
-        time: f64,
-        last: f64,
-    ) -> Result<(), RunError> {
+    fn frame(&self, now: &mut Now<'_, Structure<D>>, time: f64, last: f64) -> Result<(), RunError> {
         let Some(interval) = self.case.output.field_interval.map(|t| t.0) else { return Ok(()) };
         let number = (time / interval * (1.0 + 1e-12)).floor();
         if number <= ((time - last) / interval * (1.0 + 1e-12)).floor() {
             return Ok(());
         }
-        let state = integrator.standing().state;
+        let state = now.standing().state;
         self.keeper.map_or(Ok(()), |keeper| keeper.frame(number as usize, time, self.built, state))
     }
+}
 
-    /// Writes a checkpoint.
-    fn keep(
-        &self,
-        integrator: &mut (dyn Integrator<Structure<D>> + '_),
-        rows: &[Row],
-        work: &Work,
+/// What a march of a structure finds on its way.
+struct SolidLog<'a, const D: usize> {
+    study: &'a Study<'a, D>,
+    /// Rows of the history.
+    rows: Vec<Row>,
+    /// Work since the start.
+    work: Work,
+    monitor: &'a mut dyn Monitor,
+}
+
+impl<const D: usize> SolidLog<'_, D> {
+    /// Keeps a checkpoint.
+    fn keep(&self, now: &mut Now<'_, Structure<D>>) -> Result<(), RunError> {
+        let Some(keeper) = self.study.keeper else { return Ok(()) };
+        let Memory::March(past) = now.memory() else { return Err(RunError::NoStage) };
+        keeper.keep_march(past, now.standing().state, &self.rows, &self.work)
+    }
+}
+
+/// Adds up the work of every step.
+struct Energies<const D: usize> {
+    before: Before<D>,
+}
+
+impl<const D: usize> Observer<Structure<D>, SolidLog<'_, D>> for Energies<D> {
+    fn step(&mut self, _: &Step, now: &mut Now<'_, Structure<D>>, log: &mut SolidLog<'_, D>) -> Result<(), RunError> {
+        self.before = log.study.add_work(now, &self.before, &mut log.work);
+        Ok(())
+    }
+}
+
+/// Keeps rows of the history, and tells of them.
+struct History;
+
+impl<const D: usize> Observer<Structure<D>, SolidLog<'_, D>> for History {
+    fn step(&mut self, _: &Step, now: &mut Now<'_, Structure<D>>, log: &mut SolidLog<'_, D>) -> Result<(), RunError> {
+        let mark = now.mark();
+        if log.study.is_recorded(&mark) {
+            log.rows.push(log.study.row(now, &log.work));
+            log.monitor.tick(&log.study.tick(&mark));
+        }
+        Ok(())
+    }
+}
+
+/// Writes fields at times that the case asks for.
+struct Frames;
+
+impl<const D: usize> Observer<Structure<D>, SolidLog<'_, D>> for Frames {
+    fn step(&mut self, _: &Step, now: &mut Now<'_, Structure<D>>, log: &mut SolidLog<'_, D>) -> Result<(), RunError> {
+        let mark = now.mark();
+        log.study.frame(now, mark.time, mark.last)
+    }
+}
+
+/// Keeps checkpoints at intervals, when asked for, and where a march stops; stops it when the monitor says so.
+struct SolidCheckpoint {
+    pace: Pace,
+}
+
+impl<const D: usize> Observer<Structure<D>, SolidLog<'_, D>> for SolidCheckpoint {
+    fn wish(&mut self, _: &mut Now<'_, Structure<D>>, log: &SolidLog<'_, D>) -> Option<Wish> {
+        log.monitor.stop().then_some(Wish::Stop)
+    }
+
+    fn step(&mut self, _: &Step, now: &mut Now<'_, Structure<D>>, log: &mut SolidLog<'_, D>) -> Result<(), RunError> {
+        let step = u64::from(now.mark().iteration);
+        match log.monitor.checkpoint() || self.pace.is_due(step) {
+            true => self.pace.write(step, || log.keep(now)),
+            false => Ok(()),
+        }
+    }
+
+    fn end(
+        &mut self,
+        ending: &Ending,
+        now: &mut Now<'_, Structure<D>>,
+        log: &mut SolidLog<'_, D>,
     ) -> Result<(), RunError> {
-        let Some(keeper) = self.keeper else { return Ok(()) };
-        let Memory::March(past) = integrator.memory() else { return Err(RunError::NoStage) };
-        keeper.keep_march(past, integrator.standing().state, rows, work)
+        match ending {
+            Ending::Stopped | Ending::Failed(_) => log.keep(now),
+            _ => Ok(()),
+        }
     }
 }

@@ -118,7 +118,7 @@ fn converge<S: HasGas<D>, const D: usize>(
     let mut progress = Progress { eyes, cycle: 0, aim: Aim::Orders(orders) };
     let mut settled = Settled { goal: 10f64.powf(-orders), tolerance, iterations: plan.iterations };
     let mut checkpoint = Checkpoint::new(turn.at, None, true);
-    let all: &mut [&mut dyn Observer<_>] = &mut [&mut progress, &mut settled, &mut Told, &mut checkpoint];
+    let all: &mut [&mut dyn Observer<_, Log<'_>>] = &mut [&mut progress, &mut settled, &mut Told, &mut checkpoint];
     let ending = drive(&mut relax, all, log)?;
     match ending {
         Ending::Stopped => return Ok(None),

@@ -58,7 +58,7 @@ struct Loads<'a, S, const D: usize> {
     loads: Vec<Coefficients>,
 }
 
-impl<S: HasGas<D>, const D: usize> Observer<S> for Loads<'_, S, D> {
+impl<S: HasGas<D>, const D: usize> Observer<S, Log<'_>> for Loads<'_, S, D> {
     fn begin(&mut self, now: &mut Now<'_, S>, log: &mut Log<'_>) -> Result<(), RunError> {
         self.time.push(now.mark().time);
         let Standing { frame, work, state, .. } = now.standing();

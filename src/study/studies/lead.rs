@@ -61,7 +61,7 @@ struct Periods {
     of: u32,
 }
 
-impl<S: System> Observer<S> for Periods {
+impl<S: System> Observer<S, Log<'_>> for Periods {
     fn step(&mut self, step: &Step, now: &mut Now<'_, S>, log: &mut Log<'_>) -> Result<(), RunError> {
         let done = passed(step.time, self.period);
         if done > passed(now.before, self.period) {
@@ -82,7 +82,7 @@ struct Instances<'a, S: System> {
     all: Vec<f64>,
 }
 
-impl<S: System> Observer<S> for Instances<'_, S> {
+impl<S: System> Observer<S, Log<'_>> for Instances<'_, S> {
     fn step(&mut self, step: &Step, now: &mut Now<'_, S>, _: &mut Log<'_>) -> Result<(), RunError> {
         let parts = (step.time - self.after) / self.part;
         let whole = parts.round();

@@ -99,12 +99,12 @@ fn watched<S: Marches<D>, const D: usize>(
     let (mut limit, mut worn) = (Limit { iterations: marching.limit }, Worn { system });
     let mut checkpoint = checkpoint(turn, &keep);
     let mut told = Told;
-    let mut all: Vec<&mut dyn Observer<S>> = vec![&mut progress, &mut structures, &mut crosscheck];
-    all.extend(series.as_mut().map(|o| o as &mut dyn Observer<S>));
-    all.extend(film.as_mut().map(|o| o as &mut dyn Observer<S>));
-    all.extend(periodic.as_mut().map(|o| o as &mut dyn Observer<S>));
-    all.extend(alike.as_mut().map(|o| o as &mut dyn Observer<S>));
-    all.extend([&mut limit as &mut dyn Observer<S>, &mut told, &mut worn, &mut checkpoint]);
+    let mut all: Vec<&mut dyn Observer<S, Log<'_>>> = vec![&mut progress, &mut structures, &mut crosscheck];
+    all.extend(series.as_mut().map(|o| o as &mut dyn Observer<S, Log<'_>>));
+    all.extend(film.as_mut().map(|o| o as &mut dyn Observer<S, Log<'_>>));
+    all.extend(periodic.as_mut().map(|o| o as &mut dyn Observer<S, Log<'_>>));
+    all.extend(alike.as_mut().map(|o| o as &mut dyn Observer<S, Log<'_>>));
+    all.extend([&mut limit as &mut dyn Observer<S, Log<'_>>, &mut told, &mut worn, &mut checkpoint]);
     drive(integrator, &mut all, log)
 }
 

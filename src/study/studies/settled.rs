@@ -83,7 +83,7 @@ pub(super) struct Settled {
     pub(super) iterations: u32,
 }
 
-impl<S: System> Observer<S> for Settled {
+impl<S: System> Observer<S, Log<'_>> for Settled {
     fn wish(&mut self, now: &mut Now<'_, S>, log: &Log<'_>) -> Option<Wish> {
         let (mark, settling) = (now.mark(), &log.record.settling);
         // a checkpoint may have been written by the very iteration that ended the relaxation, or before the first one

@@ -144,7 +144,7 @@ fn watched<S: HasGas<D>, const D: usize>(
         (Limit { iterations }, Resting { patience: PATIENCE }, Swinging { patience });
     let least = if turn.stage().factor > 1.0 && !turn.last() { EARLY_ORDERS } else { orders - SETTLING };
     let (mut told, mut flat) = (Told, spacing::asked(&log.case).map(|asked| flat(&asked, least)));
-    let mut all: Vec<&mut dyn Observer<S>> = vec![&mut progress, &mut limit, &mut told];
+    let mut all: Vec<&mut dyn Observer<S, Log<'_>>> = vec![&mut progress, &mut limit, &mut told];
     all.push(if hurried { &mut resting } else { &mut swinging });
     let mut given = Given { patience: PATIENCE_AT_REST, range: GIVEN };
     if hurried && flat.is_none() && turn.stage().point.is_none() {

@@ -22,7 +22,7 @@ pub(crate) struct Checkpoint<'a, S: System> {
     written: f64,
 }
 
-impl<S: System> Observer<S> for Checkpoint<'_, S> {
+impl<S: System> Observer<S, Log<'_>> for Checkpoint<'_, S> {
     fn begin(&mut self, now: &mut Now<'_, S>, log: &mut Log<'_>) -> Result<(), RunError> {
         self.written = log.wall_seconds();
         if now.mark().iteration == 0 { self.write(now, log) } else { Ok(()) }

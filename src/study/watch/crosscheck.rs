@@ -13,7 +13,7 @@ pub(crate) struct CrossCheck<'a, S, const D: usize> {
     pub(crate) system: &'a S,
 }
 
-impl<S: HasGas<D>, const D: usize> Observer<S> for CrossCheck<'_, S, D> {
+impl<S: HasGas<D>, const D: usize> Observer<S, Log<'_>> for CrossCheck<'_, S, D> {
     fn step(&mut self, step: &Step, now: &mut Now<'_, S>, log: &mut Log<'_>) -> Result<(), RunError> {
         let Some(part) = log.period.map(|p| p / f64::from(MOMENTS)) else { return Ok(()) };
         if passed(step.time, part) <= passed(now.before, part) {

@@ -2,7 +2,6 @@
 //!
 //! Before each step the observers say what they wish; the strongest wish ends the loop. After each step they look at it, in
 //! their order, so that a checkpoint, which comes last, holds what the others have found.
-use super::super::record::Log;
 use crate::problem::RunError;
 use crate::system::System;
 use crate::time::{Cost, Integrator, Mark, Memory, Standing, Step, TimeError};
@@ -81,31 +80,31 @@ impl<'a, S: System> Now<'a, S> {
     }
 }
 
-/// Something that watches an integrator.
-pub(crate) trait Observer<S: System> {
+/// Something that watches an integrator, and writes into the log `L` of the study.
+pub(crate) trait Observer<S: System, L> {
     /// Before the first step.
-    fn begin(&mut self, _: &mut Now<'_, S>, _: &mut Log<'_>) -> Result<(), RunError> {
+    fn begin(&mut self, _: &mut Now<'_, S>, _: &mut L) -> Result<(), RunError> {
         Ok(())
     }
     /// Before every step: whether to go on.
-    fn wish(&mut self, _: &mut Now<'_, S>, _: &Log<'_>) -> Option<Wish> {
+    fn wish(&mut self, _: &mut Now<'_, S>, _: &L) -> Option<Wish> {
         None
     }
     /// After every step.
-    fn step(&mut self, _: &Step, _: &mut Now<'_, S>, _: &mut Log<'_>) -> Result<(), RunError> {
+    fn step(&mut self, _: &Step, _: &mut Now<'_, S>, _: &mut L) -> Result<(), RunError> {
         Ok(())
     }
     /// After the last step.
-    fn end(&mut self, _: &Ending, _: &mut Now<'_, S>, _: &mut Log<'_>) -> Result<(), RunError> {
+    fn end(&mut self, _: &Ending, _: &mut Now<'_, S>, _: &mut L) -> Result<(), RunError> {
         Ok(())
     }
 }
 
 /// Drives an integrator until it is finished, fails, or an observer wishes an end.
-pub(crate) fn drive<S: System>(
+pub(crate) fn drive<S: System, L>(
     integrator: &mut dyn Integrator<S>,
-    observers: &mut [&mut dyn Observer<S>],
-    log: &mut Log<'_>,
+    observers: &mut [&mut dyn Observer<S, L>],
+    log: &mut L,
 ) -> Result<Ending, RunError> {
     let start = integrator.check();
     let mut now = Now::at(integrator);

@@ -50,7 +50,7 @@ pub(crate) struct Effort {
     pub(crate) points: usize,
 }
 
-impl<S: System> Observer<S> for Effort {
+impl<S: System> Observer<S, Log<'_>> for Effort {
     fn begin(&mut self, now: &mut Now<'_, S>, log: &mut Log<'_>) -> Result<(), RunError> {
         log.record.work.begin(now.cost().evaluations);
         Ok(())
@@ -81,7 +81,7 @@ pub(crate) struct Progress<'a, S> {
     pub(crate) aim: Aim,
 }
 
-impl<S: System> Observer<S> for Progress<'_, S> {
+impl<S: System> Observer<S, Log<'_>> for Progress<'_, S> {
     fn begin(&mut self, now: &mut Now<'_, S>, log: &mut Log<'_>) -> Result<(), RunError> {
         self.effort().begin(now, log)
     }

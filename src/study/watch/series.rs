@@ -19,7 +19,7 @@ pub(crate) struct FieldSeries<'a, S, const D: usize> {
     pub(crate) interval: f64,
 }
 
-impl<S: Marches<D>, const D: usize> Observer<S> for FieldSeries<'_, S, D> {
+impl<S: Marches<D>, const D: usize> Observer<S, Log<'_>> for FieldSeries<'_, S, D> {
     fn step(&mut self, step: &Step, now: &mut Now<'_, S>, log: &mut Log<'_>) -> Result<(), RunError> {
         if passed(step.time, self.interval) <= passed(now.before, self.interval) {
             return Ok(());
@@ -44,7 +44,7 @@ pub(crate) struct Film<'a, S, const D: usize> {
     pub(crate) surface: &'a Surface<D>,
 }
 
-impl<S: HasGas<D>, const D: usize> Observer<S> for Film<'_, S, D> {
+impl<S: HasGas<D>, const D: usize> Observer<S, Log<'_>> for Film<'_, S, D> {
     fn step(&mut self, step: &Step, now: &mut Now<'_, S>, log: &mut Log<'_>) -> Result<(), RunError> {
         let Some(period) = log.period else { return Ok(()) };
         let before = now.before;

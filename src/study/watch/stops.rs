@@ -11,7 +11,7 @@ pub(crate) struct Limit {
     pub(crate) iterations: u32,
 }
 
-impl<S: System> Observer<S> for Limit {
+impl<S: System> Observer<S, Log<'_>> for Limit {
     fn wish(&mut self, now: &mut Now<'_, S>, _: &Log<'_>) -> Option<Wish> {
         (now.mark().iteration >= self.iterations).then_some(Wish::GiveUp)
     }
@@ -23,7 +23,7 @@ pub(crate) struct Resting {
     pub(crate) patience: u32,
 }
 
-impl<S: System> Observer<S> for Resting {
+impl<S: System> Observer<S, Log<'_>> for Resting {
     fn wish(&mut self, now: &mut Now<'_, S>, _: &Log<'_>) -> Option<Wish> {
         (now.mark().resting >= self.patience).then_some(Wish::GiveUp)
     }
@@ -38,7 +38,7 @@ pub(crate) struct Given {
     pub(crate) range: f64,
 }
 
-impl<S: System> Observer<S> for Given {
+impl<S: System> Observer<S, Log<'_>> for Given {
     fn wish(&mut self, now: &mut Now<'_, S>, log: &Log<'_>) -> Option<Wish> {
         let resting = now.mark().resting >= self.patience;
         (resting && at_rest(log, self.patience as usize + 1, self.range)).then_some(Wish::GiveUp)
@@ -59,7 +59,7 @@ pub(crate) struct Swinging {
     pub(crate) patience: usize,
 }
 
-impl<S: System> Observer<S> for Swinging {
+impl<S: System> Observer<S, Log<'_>> for Swinging {
     fn wish(&mut self, now: &mut Now<'_, S>, log: &Log<'_>) -> Option<Wish> {
         let since = log.record.history.since_smallest(now.mark().iteration as usize);
         (since >= self.patience).then_some(Wish::GiveUp)
@@ -77,7 +77,7 @@ pub(crate) struct Flat {
     pub(crate) iterations: usize,
 }
 
-impl<S: System> Observer<S> for Flat {
+impl<S: System> Observer<S, Log<'_>> for Flat {
     fn wish(&mut self, now: &mut Now<'_, S>, log: &Log<'_>) -> Option<Wish> {
         let mark = now.mark();
         if mark.residual > self.residual || (mark.iteration as usize) < self.iterations {
@@ -90,7 +90,7 @@ impl<S: System> Observer<S> for Flat {
 /// Ends where the monitor says so.
 pub(crate) struct Told;
 
-impl<S: System> Observer<S> for Told {
+impl<S: System> Observer<S, Log<'_>> for Told {
     fn wish(&mut self, _: &mut Now<'_, S>, log: &Log<'_>) -> Option<Wish> {
         log.stopped().then_some(Wish::Stop)
     }
@@ -102,7 +102,7 @@ pub(crate) struct Periodic {
     pub(crate) tolerance: f64,
 }
 
-impl<S: System> Observer<S> for Periodic {
+impl<S: System> Observer<S, Log<'_>> for Periodic {
     fn wish(&mut self, now: &mut Now<'_, S>, log: &Log<'_>) -> Option<Wish> {
         let mark = now.mark();
         // a checkpoint may have been written by the very step that ended the march
@@ -128,7 +128,7 @@ impl Alike {
     const FAINT: f64 = 1e-3;
 }
 
-impl<S: System> Observer<S> for Alike {
+impl<S: System> Observer<S, Log<'_>> for Alike {
     fn wish(&mut self, _: &mut Now<'_, S>, log: &Log<'_>) -> Option<Wish> {
         let time = log.record.structures.time.last()?;
         let periods = (time / self.period * (1.0 + f64::EPSILON)) as u64;
@@ -149,7 +149,7 @@ pub(crate) struct Worn<'a, S, const D: usize> {
     pub(crate) system: &'a S,
 }
 
-impl<S: HasGas<D>, const D: usize> Observer<S> for Worn<'_, S, D> {
+impl<S: HasGas<D>, const D: usize> Observer<S, Log<'_>> for Worn<'_, S, D> {
     fn wish(&mut self, now: &mut Now<'_, S>, _: &Log<'_>) -> Option<Wish> {
         let frame = self.system.gas_frame(now.standing().frame);
         self.system.gas().is_worn(frame).then_some(Wish::Pause)

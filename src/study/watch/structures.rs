@@ -13,7 +13,7 @@ pub(crate) struct Structures<'a, S, const D: usize> {
     pub(crate) system: &'a S,
 }
 
-impl<S: HasGas<D>, const D: usize> Observer<S> for Structures<'_, S, D> {
+impl<S: HasGas<D>, const D: usize> Observer<S, Log<'_>> for Structures<'_, S, D> {
     fn step(&mut self, step: &Step, now: &mut Now<'_, S>, log: &mut Log<'_>) -> Result<(), RunError> {
         let Standing { frame, work, state, .. } = now.standing();
         match self.system.exchange(frame, state, work) {
