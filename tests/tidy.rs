@@ -9,7 +9,7 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 
 /// Modules by floor: each may use strictly lower floors only.
-const FLOORS: [(&str, u8); 20] = [
+const FLOORS: [(&str, u8); 21] = [
     ("math", 0),
     ("case", 0),
     ("system", 1),
@@ -28,8 +28,9 @@ const FLOORS: [(&str, u8); 20] = [
     ("record", 5),
     ("report", 6),
     ("verify", 6),
-    ("run", 7),
-    ("lib", 8),
+    ("study", 7),
+    ("run", 8),
+    ("lib", 9),
 ];
 
 /// Modules that may use less than their floor allows.
@@ -47,7 +48,7 @@ const NARROW: [(&str, &[&str]); 10] = [
 ];
 
 /// Modules whose files use one another one way only.
-const ONE_WAY: [&str; 6] = ["case", "cloud", "scheme", "solid", "problem", "run"];
+const ONE_WAY: [&str; 7] = ["case", "cloud", "scheme", "solid", "problem", "study", "run"];
 
 /// Who may open files.
 const OPENS_FILES: [&str; 7] = [
@@ -452,6 +453,28 @@ fn the_book_is_whole() {
         &problems,
         "the book has all its pages, formulas as code and no picture from elsewhere (book/formulas.py)",
     );
+}
+
+/// Each of the twelve rows names a file that has what it says: a function, type or trait of that name.
+#[test]
+fn questions_lead_to_their_files() {
+    let text = read("ARCHITECTURE.md");
+    let table = text.split("## Where to look").nth(1).unwrap_or_default().split("\n## ").next().unwrap_or_default();
+    let rows: Vec<Vec<&str>> =
+        table.lines().filter(|l| l.contains('?')).map(|l| l.split('`').skip(1).step_by(2).collect()).collect();
+    assert_eq!(rows.len(), 12, "twelve questions");
+    let mut lost = Vec::new();
+    for row in &rows {
+        let [file, name] = row[..] else { panic!("a row without file and name: {row:?}") };
+        let there = root().join(file).is_file();
+        let kinds = ["fn", "struct", "trait", "enum"].map(|kind| format!("{kind} {name}"));
+        let ends = |rest: &str| !rest.starts_with(|c: char| c == '_' || c.is_alphanumeric());
+        let has = |kind: &String| code(file).split(kind.as_str()).skip(1).any(ends);
+        if !there || !kinds.iter().any(has) {
+            lost.push(format!("{file} has no `{name}`"));
+        }
+    }
+    assert_none(&lost, "ARCHITECTURE.md sends readers where nothing is");
 }
 
 #[test]

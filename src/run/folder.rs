@@ -3,7 +3,6 @@ use std::fs::{self, File, TryLockError};
 use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 
-use super::record::saved;
 use crate::case::{Case, Cloud, Compare, open_regular, read, read_regular, write, write_cloud};
 use crate::geometry::dimension;
 use crate::observe::checkpoint;
@@ -12,6 +11,7 @@ use crate::observe::write_atomic;
 use crate::problem::RunError;
 use crate::problem::files::plain;
 use crate::report::check_reference;
+use crate::study::record::saved;
 
 /// Where the folder of the case file is noted.
 const ORIGIN: &str = "origin.txt";

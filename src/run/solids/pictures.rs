@@ -1,12 +1,12 @@
 //! Pictures of bodies made of particles: where they are and what stress is in them, on dots in the plane and on the skin in space.
 use std::path::Path;
 
-use super::fields::von_mises;
 use crate::math::{Bounds, Vector};
 use crate::problem::RunError;
 use crate::report::{Colormap, Dots, Scatter, Shell, SurfaceStyle, scatter_png, surface_png, write_file};
 use crate::solid::Solid;
 use crate::solid::forces::State;
+use crate::study::solids::von_mises;
 
 /// Room around the bodies in a picture, in their length.
 const MARGIN: f64 = 0.1;
