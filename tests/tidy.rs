@@ -310,7 +310,8 @@ const ROWS: [&str; 24] = [
 #[test]
 fn sums_over_rows_are_in_one_place() {
     let mut problems = Vec::new();
-    for path in ["time", "scheme", "solid", "coupling"].iter().flat_map(|m| sources_of(m)) {
+    let rooms = ["time", "scheme", "solid", "coupling"].iter().flat_map(|m| sources_of(m));
+    for path in rooms.filter(|p| !p.contains("/tests")) {
         let text: String = code(&path).split_whitespace().collect();
         let all = text.split([';', '{', '}']).filter(|s| FOLDS.iter().any(|w| s.contains(w)));
         let over_rows = all.filter(|s| {

@@ -117,8 +117,8 @@ pub(crate) struct SmallMotion<'a, S: Marches<D>, const D: usize> {
 impl<'a, S: Marches<D>, const D: usize> SmallMotion<'a, S, D> {
     /// `system` at the steady state `state`; `axes` are those of lift and moment. The limiter stays what it is there where it is `frozen`.
     pub(crate) fn new(system: &'a S, state: &[f64], (axes, frozen): (&LoadFrame, bool)) -> Self {
-        let (mut work, place) = (system.work(), system.placing());
-        let frame = system.frame(&Instant::formula(0.0, &[]).with(&state[place]), state);
+        let mut work = system.work();
+        let frame = system.frame(&Instant::formula(0.0, &[]).with(&system.placing().values(state)), state);
         let (gas, own) = (system.gas(), system.gas_state(state));
         let (mut gas_frame, mut gas_work) = (system.gas_frame(&frame).clone(), gas.work());
         if frozen {
@@ -137,8 +137,7 @@ impl<'a, S: Marches<D>, const D: usize> SmallMotion<'a, S, D> {
 
     /// What the coordinate number `j` does, by central differences over `step`.
     fn column(&mut self, j: usize, step: f64) -> Column {
-        let place = self.system.placing();
-        let still = self.state[place].to_vec();
+        let still = self.system.placing().values(&self.state).into_owned();
         let moved = |part: usize, by: f64| {
             let mut all = still.clone();
             all[2 * j + part] += by;
@@ -177,7 +176,7 @@ impl<'a, S: Marches<D>, const D: usize> SmallMotion<'a, S, D> {
     /// R and forces where the coordinates are `coordinates` and ∂/∂t is `terms`.
     fn response(&mut self, coordinates: &[f64], terms: &[Term<'_>]) -> (Vec<f64>, Vec<f64>) {
         let mut u = self.state.clone();
-        u[self.system.placing()].copy_from_slice(coordinates);
+        self.system.placing().set(coordinates, &mut u);
         self.system.place(&Instant::formula(0.0, terms).with(coordinates), &mut self.frame);
         let mut du = vec![0.0; u.len()];
         self.system.rhs_with_boundary(&u, &mut self.work, &mut self.frame, &mut du);
@@ -221,7 +220,8 @@ impl<S: Marches<D>, const D: usize> ForceSource for SmallMotion<'_, S, D> {
         let mut all = Matrices { mass: vec![0.0; n * n], damping: vec![0.0; n * n], stiffness: vec![0.0; n * n] };
         for body in Attached::distinct(self.system.attached()) {
             let (m, first) = (body.structure.len(), body.first);
-            let q: Vec<f64> = (0..m).map(|k| self.state[self.system.placing()][2 * (first + k)]).collect();
+            let own = self.system.placing().values(&self.state);
+            let q: Vec<f64> = (0..m).map(|k| own[2 * (first + k)]).collect();
             let own = body.structure.matrices(&q, &vec![0.0; m]);
             let pairs =
                 [(&mut all.mass, own.mass), (&mut all.damping, own.damping), (&mut all.stiffness, own.stiffness)];
@@ -240,7 +240,7 @@ impl<S: Marches<D>, const D: usize> ForceSource for SmallMotion<'_, S, D> {
     }
 
     fn still(&self) -> Vec<f64> {
-        self.state[self.system.placing()].iter().step_by(2).copied().collect()
+        self.system.placing().values(&self.state).iter().step_by(2).copied().collect()
     }
 
     fn springs(&self) -> Vec<Spring> {
@@ -299,7 +299,7 @@ impl<S: Marches<D>, const D: usize> ForceSource for SmallMotion<'_, S, D> {
         let plan = Hierarchy { group: control.group, cycle: control.cycle };
         let solved = self.linear.solve(omega, &right, TOLERANCE, (&plan, stop))?;
         // forces are those at rest: the frame stands where the steady flow has it
-        let still = self.state[self.system.placing()].to_vec();
+        let still = self.system.placing().values(&self.state).into_owned();
         self.system.place(&Instant::formula(0.0, &[]).with(&still), &mut self.frame);
         let mut all = Forces { generalised: vec![Complex64::new(0.0, 0.0); n * n], ..Forces::default() };
         for (j, (x, end)) in solved.into_iter().enumerate() {

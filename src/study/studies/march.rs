@@ -61,7 +61,7 @@ pub(crate) fn march<S: Marches<D>, const D: usize>(
         if over {
             let system = &solver.system;
             let at = Instant::formula(system.gas().stood(), &[]);
-            return Ok(Some(Reached::at(system.frame(&at.with(&u[system.placing()]), &u), u)));
+            return Ok(Some(Reached::at(system.frame(&at.with(&system.placing().values(&u)), &u), u)));
         }
         begin = (past, u);
     }

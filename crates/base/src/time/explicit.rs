@@ -71,7 +71,7 @@ impl<'a, S: System> Explicit<'a, S> {
             true => Instant::within(end - step, step, 1.0),
             false => Instant::still(end),
         };
-        let frame = system.frame(&at.with(&u[system.placing()]), &u);
+        let frame = system.frame(&at.with(&system.placing().values(&u)), &u);
         Self {
             system,
             method,
@@ -103,7 +103,8 @@ impl<'a, S: System> Explicit<'a, S> {
 
     /// Brings the frame to part of the way through the step of length `dt` that begins now.
     fn place(&mut self, dt: f64, fraction: f64) {
-        let at = Instant::within(self.past.time, dt, fraction).with(&self.u[self.system.placing()]);
+        let coordinates = self.system.placing().values(&self.u);
+        let at = Instant::within(self.past.time, dt, fraction).with(&coordinates);
         self.system.place(&at, &mut self.frame);
     }
 

@@ -162,7 +162,7 @@ impl<'a, S: Implicit> Relax<'a, S> {
     pub fn new(system: &'a S, control: Control, u: Vec<f64>, origin: &[f64], resume: Option<Resume>) -> Self {
         let n = u.len();
         let mut work = system.work();
-        let frame = system.frame(&Instant::still(0.0).with(&origin[system.placing()]), origin);
+        let frame = system.frame(&Instant::still(0.0).with(&system.placing().values(origin)), origin);
         let mut rate = vec![0.0; rows(system.fields())];
         system.rates(&frame, origin, &mut work, &mut rate);
         let implicit = control.method != Method::RungeKutta;
@@ -209,7 +209,7 @@ impl<'a, S: Implicit> Relax<'a, S> {
         let system = self.system;
         system.rhs(&self.frame, origin, &mut self.work, &mut self.trial_residual);
         if self.moves() {
-            system.place(&Instant::still(0.0).with(&self.u[system.placing()]), &mut self.frame);
+            system.place(&Instant::still(0.0).with(&system.placing().values(&self.u)), &mut self.frame);
         }
         system.rhs_with_boundary(&self.u, &mut self.work, &mut self.frame, &mut self.residual);
         if !goes_on {
@@ -311,7 +311,7 @@ impl<'a, S: Implicit> Relax<'a, S> {
     pub fn begin_step(&mut self, term: TimeTerm) {
         let (system, placing) = (self.system, self.system.placing());
         system.prescribe(term.formula.time(), &mut self.u);
-        term.formula.at(&self.u[placing], |at| system.place(at, &mut self.frame));
+        term.formula.at(&placing.values(&self.u), |at| system.place(at, &mut self.frame));
         system.rhs_with_boundary(&self.u, &mut self.work, &mut self.frame, &mut self.residual);
         system.rates(&self.frame, &self.u, &mut self.work, &mut self.rate);
         let (rate, coefficient) = (&self.rate, term.rate());

@@ -6,7 +6,7 @@ use super::body::Solid;
 use super::forces::{State, Tangents, Work};
 use crate::math::reduce::{largest_size, minimum};
 use crate::math::sparse::Symmetric;
-use crate::system::{Damping, Fault, Field, Instant, Mechanical, Moment, System};
+use crate::system::{Damping, Fault, Field, Instant, Mechanical, Moment, Name, System};
 
 /// Unknowns of the largest matrix that is factored, in the plane and in space: what a few seconds and a gigabyte suffice for.
 const FACTORED: [usize; 2] = [300_000, 45_000];
@@ -23,9 +23,9 @@ impl<const D: usize> Structure<D> {
     pub fn new(solid: Solid<D>) -> Self {
         let n = solid.len();
         let fields = vec![
-            Field::new("displacement", n, D),
-            Field::new("velocity", n, D),
-            Field::new("history", n, solid.history_width()),
+            Field::new(Name::Other("displacement"), n, D),
+            Field::new(Name::Other("velocity"), n, D),
+            Field::new(Name::History, n, solid.history_width()),
         ];
         Self { solid, fields }
     }

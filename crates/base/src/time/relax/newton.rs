@@ -129,7 +129,7 @@ pub(super) fn shift<'a>((rates, cfl): (&'a [f64], f64), time: Option<&TimeTerm>,
 
 /// Brings a frame to where the state `u` puts it.
 pub(super) fn put<S: System>(system: &S, time: Option<&TimeTerm>, u: &[f64], frame: &mut S::Frame) {
-    let coordinates = &u[system.placing()];
+    let coordinates = &system.placing().values(u);
     match time {
         Some(term) => term.formula.at(coordinates, |at| system.place(at, frame)),
         None => system.place(&Instant::still(0.0).with(coordinates), frame),
