@@ -5,6 +5,7 @@ use num_complex::Complex64;
 use serde::Deserialize;
 
 use super::held::Held;
+use crate::observe::sums;
 use crate::problem::RunError;
 use crate::problem::files;
 use crate::record::flutter::Mark;
@@ -81,6 +82,7 @@ impl Stored {
         let wrong =
             |what: String| unfit(&file, &what, "give `flutter.json` of `alula flutter`, or `gaf.json` of `alula gaf`");
         let (place, name) = (path.parent().unwrap_or(Path::new("")), path.file_name().unwrap_or_default());
+        sums::check_file(path)?;
         let text = files::text(place, &name.to_string_lossy()).map_err(|e| wrong(format!("cannot be read: {e}")))?;
         let value: serde_json::Value = serde_json::from_str(&text).map_err(|e| wrong(format!("is no JSON: {e}")))?;
         let all = if value.get("flutter").is_some() {
