@@ -61,6 +61,7 @@ impl Place {
     fn kept(&self, case: &Case, out: &Path, monitor: &mut dyn Monitor) -> Result<Outcome, RunError> {
         let own = folder::is_of(case, out);
         if let Some(summary) = folder::finished(out).filter(|_| own) {
+            folder::check_files(out)?;
             return Ok(Outcome::AlreadyFinished { summary });
         }
         if own && folder::has_begun(out) {

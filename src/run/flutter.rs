@@ -12,6 +12,7 @@ use self::skin::Skin;
 use super::folder::{self, Places};
 use super::refusals;
 use crate::case::{Case, Matching};
+use crate::observe::sums;
 use crate::problem::files::text;
 use crate::problem::solids::told_of_own_modes;
 use crate::problem::{Problem, RunError};
@@ -105,6 +106,7 @@ fn sought(
 fn read(path: &Path) -> Result<Stored, RunError> {
     let file = path.display().to_string();
     let (place, name) = (path.parent().unwrap_or(Path::new("")), path.file_name().unwrap_or_default());
+    sums::check_file(path)?;
     let text = text(place, &name.to_string_lossy()).map_err(|e| unreadable(&file, &format!("cannot be read: {e}")))?;
     Stored::parse(&file, &text)
 }

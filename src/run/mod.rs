@@ -185,7 +185,7 @@ pub fn set_aside(case: &Case, places: &Places) -> Result<Option<PathBuf>, RunErr
 pub fn resume(out: &Path, monitor: &mut dyn Monitor) -> Result<Outcome, RunError> {
     if let Some(summary) = folder::finished(out) {
         folder::read_case(out)?;
-        folder::check_summary(out)?;
+        folder::check_files(out)?;
         return Ok(Outcome::AlreadyFinished { summary });
     }
     if !case_of(out)?.has_gas() {

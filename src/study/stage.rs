@@ -1,6 +1,8 @@
 //! Stages: what a run is a plain list of.
 use serde::{Deserialize, Serialize};
 
+use crate::problem::coarser::times_the_spacing;
+
 /// What a stage does on its cloud.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
@@ -47,7 +49,7 @@ impl Stage {
     /// What is told while its cloud is built.
     pub(crate) fn building(&self) -> String {
         let spacing =
-            if self.factor == 1.0 { String::new() } else { format!(" with {:.3} times the spacing", self.factor) };
+            if self.factor == 1.0 { String::new() } else { format!(" with {}", times_the_spacing(self.factor)) };
         let cycle = if self.cycle == 0 { String::new() } else { format!(", refined {} times", self.cycle) };
         format!("building the cloud{spacing}{cycle}")
     }

@@ -57,9 +57,10 @@ pub(crate) fn write_all<const D: usize>(
     write_state_script(out)?;
     if let Some(solid) = solid {
         let time = found.case.flow.units().case_time(found.view.time());
-        write_solid((out, "solid"), &about::solid(found.case, Some(time)), solid)?;
+        let about = about::solid(found.case, Some(time));
+        write_solid((out, "solid"), &about, solid)?;
         if found.case.output.report {
-            draw_solid(out, solid)?;
+            draw_solid((out, &about), solid)?;
         }
     }
     if found.case.output.report {

@@ -87,13 +87,14 @@ impl Files<'_> {
         let moved: Vec<[f64; D]> = shape.iter().map(|v| v.map(|v| size * v)).collect();
         let values: Vec<f64> = shape.iter().map(|v| Vector(*v).norm()).collect();
         let title = format!("Mode {}: {} Hz", k + 1, digits(mode.omega / std::f64::consts::TAU));
-        picture((out, &format!("mode-{}", k + 1)), solid, &moved, &Shown { title, quantity: "displacement", values })
+        let quantity = "displacement".to_owned();
+        picture((out, &format!("mode-{}", k + 1)), solid, &moved, &Shown { title, quantity, values })
     }
 
     /// Pictures of the structure as deformed.
     fn pictures<const D: usize>(&self, built: &Built<D>, u: &[f64]) -> Result<(), RunError> {
         let Some(out) = self.drawn() else { return Ok(()) };
-        draw(out, &built.structure.solid, &built.structure.state(0.0, u))
+        draw((out, about::solid(self.case, None).scale), &built.structure.solid, &built.structure.state(0.0, u))
     }
 
     /// `report.html`, of the files that are there.
