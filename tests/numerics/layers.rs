@@ -294,7 +294,7 @@ fn layers_stop_before_they_meet_in_a_notch_and_the_gas_stays_at_rest() {
 fn a_first_layer_beyond_the_spacing_is_told() {
     let cloud = build::<2>(CIRCLE, "spacing = 0.03\nwall_layers = { first = 0.1 }");
     let notes = Diagnosis::of(&cloud, 0).notes;
-    assert!(notes.iter().any(|n| n.starts_with("no wall layer at all: `cloud.wall_layers.first`")), "{notes:?}");
+    assert!(notes.iter().any(|n| n.starts_with("there are no wall layers: `cloud.wall_layers.first`")), "{notes:?}");
 }
 
 #[test]

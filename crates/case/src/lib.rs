@@ -1,2 +1,2 @@
-//! What a case file says, as plain data; it knows no solver type.
+//! The case file as plain data: reading, checking and writing. This crate knows no solver type.
 pub mod case;

@@ -1,4 +1,4 @@
-//! Surfaces, how they move, and what carries them.
+//! Surfaces of bodies, their motion, and elastic structures.
 use alula_base::math;
 use alula_case::case;
 

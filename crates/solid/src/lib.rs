@@ -1,4 +1,4 @@
-//! Structures made of particles.
+//! Deformable solids discretised by particles.
 #[cfg(test)]
 use alula_base::time;
 use alula_base::{math, physics, system};

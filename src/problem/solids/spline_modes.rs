@@ -10,7 +10,7 @@ use crate::case::{Case, ModeTable, Solid, SolidPlace, SolidSupport, StructureMod
 use crate::geometry::{Surface, load_surface};
 use crate::math::Vector;
 use crate::physics::solid::Material;
-use crate::solid::splines::{self, Found, Held, Mirror, Unfit, modes};
+use crate::solid::splines::{self, HeldBox, Mirror, SplineModes, SplineModesError, modes};
 
 /// Points of the surface that carry the shapes.
 const POINTS: usize = 800;
@@ -29,7 +29,7 @@ pub(super) fn spline_modes(
     let name = data.name.clone().unwrap_or_else(|| format!("body {}", body + 1));
     let (surface, _) = load_surface::<3>(std::slice::from_ref(data), input)?;
     let materials = materials(solid, &name)?;
-    let held: Vec<Held> = supports(solid);
+    let held: Vec<HeldBox> = supports(solid);
     let mirrors: Vec<Mirror> = cuts(case, &surface.bounds())
         .iter()
         .map(|cut| Mirror { axis: cut.axis, place: cut.place, below: cut.below })
@@ -65,32 +65,34 @@ fn materials(solid: &Solid, name: &str) -> Result<Vec<Material>, RunError> {
 }
 
 /// Where the body is held.
-fn supports(solid: &Solid) -> Vec<Held> {
+fn supports(solid: &Solid) -> Vec<HeldBox> {
     let one = |place: &SolidSupport| {
         let axes: Vec<usize> = place.axes(3).into_iter().map(|a| a.index()).collect();
         let bounds = match &place.place {
             SolidPlace::Box(sides) => sides.bounds(),
             SolidPlace::All(_) => [[f64::NEG_INFINITY, f64::INFINITY]; 3],
         };
-        Held { place: bounds, fixed: std::array::from_fn(|d| axes.contains(&d)) }
+        HeldBox { place: bounds, fixed: std::array::from_fn(|d| axes.contains(&d)) }
     };
     solid.supports.iter().map(one).collect()
 }
 
-fn refused(unfit: &Unfit, name: &str, surface: &Surface<3>) -> RunError {
+fn refused(unfit: &SplineModesError, name: &str, surface: &Surface<3>) -> RunError {
     let bounds = surface.bounds();
     let side = |d: usize| format!("{} from {:.6} to {:.6}", ["x", "y", "z"][d], bounds.min[d], bounds.max[d]);
     let hint = match unfit {
-        Unfit::Unsupported { .. } => format!("the body has {}", (0..3).map(side).collect::<Vec<_>>().join(", ")),
-        Unfit::Hollow => "repair the surface: `alula check` tells of its holes".to_owned(),
-        Unfit::TooLarge { .. } => "give a larger `spacing` in `[body.solid]`, or leave it out".to_owned(),
-        Unfit::Soft => "check the elastic constants".to_owned(),
+        SplineModesError::Unsupported { .. } => {
+            format!("the body has {}", (0..3).map(side).collect::<Vec<_>>().join(", "))
+        }
+        SplineModesError::Hollow => "repair the surface: `alula check` tells of its holes".to_owned(),
+        SplineModesError::TooLarge { .. } => "give a larger `spacing` in `[body.solid]`, or leave it out".to_owned(),
+        SplineModesError::Soft => "check the elastic constants".to_owned(),
     };
     RunError::Solid { what: format!("own modes of `{name}`: {unfit}"), hint }
 }
 
 /// Refuses a surface that leaks.
-fn leaks(found: &Found, surface: &Surface<3>, mirrors: &[Mirror], name: &str) -> Result<(), RunError> {
+fn leaks(found: &SplineModes, surface: &Surface<3>, mirrors: &[Mirror], name: &str) -> Result<(), RunError> {
     let off = found.volume / surface.volume() - 1.0;
     if off.abs() < LEAK || !mirrors.is_empty() {
         return Ok(());
@@ -105,8 +107,8 @@ fn leaks(found: &Found, surface: &Surface<3>, mirrors: &[Mirror], name: &str) ->
 }
 
 /// Mode number `k`, so that its greatest displacement is 1.
-fn natural(found: &mut Found, k: usize, solid: &Solid, points: &[Vector<3>]) -> Natural {
-    let shape = |found: &Found| points.iter().map(|x| found.displacement(k, x)).collect::<Vec<_>>();
+fn natural(found: &mut SplineModes, k: usize, solid: &Solid, points: &[Vector<3>]) -> Natural {
+    let shape = |found: &SplineModes| points.iter().map(|x| found.displacement(k, x)).collect::<Vec<_>>();
     let largest = |m: f64, u: &Vector<3>| u.0.iter().fold(m, |m, x| if x.abs() > m.abs() { *x } else { m });
     let greatest = shape(found).iter().fold(0.0, largest);
     found.scale(k, greatest);

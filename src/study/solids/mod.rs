@@ -15,7 +15,7 @@ use crate::case::{Case, Temporal};
 use crate::geometry::dimension;
 use crate::problem::RunError;
 use crate::problem::solids::{build, supported};
-use crate::solid::modes::{Wanted, modes};
+use crate::solid::modes::{ModeRequest, modes};
 
 pub use record::{ModeRow, PeriodicRow, ProbeHarmonic, ProbeRow, SolidLedger, SolidSolution, SolidSummary};
 
@@ -71,7 +71,7 @@ fn study<const D: usize>(
     let found = match &case.time {
         Temporal::Modes(plan) => {
             let above = plan.shift.map_or(0.0, |f| f.0);
-            let wanted = Wanted { count: plan.number as usize, above };
+            let wanted = ModeRequest { count: plan.number as usize, above };
             modes(&built.structure, &marched.state, &wanted)
                 .map_err(|e| RunError::Solid { what: e.to_string(), hint: "see the guide `structures`".into() })?
         }

@@ -1,49 +1,49 @@
-//! Mistakes in a case file, all at once, each with its place.
+//! Errors in a case file, collected, each with its position.
 use std::fmt;
 use std::ops::Range;
 
 use annotate_snippets::{AnnotationKind, Level, Renderer, Snippet};
 use serde::Serialize;
 
-/// Longest piece of the file repeated in a message.
+/// Greatest length of a quotation from the file in a message.
 const LONGEST_QUOTE: usize = 48;
-/// Longest list of what is allowed that is shown beside a hint.
+/// Greatest length of a list of permitted values that is shown beside a hint.
 const LONGEST_LABEL: usize = 72;
 
-/// Most mistakes that are shown; the others are counted.
+/// Greatest number of errors that are shown; the others are counted.
 pub(super) const MOST_SHOWN: usize = 50;
 
-/// One mistake in a case file.
+/// One error in a case file.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct CaseError {
-    /// Key path, `cloud.box[0].spacing`; empty for the whole file.
+    /// Path of the key, for example `cloud.box[0].spacing`; empty for the whole file.
     #[serde(rename = "key")]
     pub path: String,
-    /// Bytes of the file the message points at; never longer than a line.
+    /// Range of bytes of the file that the message refers to; within one line.
     #[serde(skip)]
     pub span: Range<usize>,
-    /// Line, counted from 1.
+    /// Line number, counted from 1.
     pub line: usize,
     /// Column of the first character, counted from 1.
     pub column: usize,
-    /// Column behind the last character.
+    /// Column after the last character.
     pub end_column: usize,
-    /// What is wrong.
+    /// Description of the error.
     pub message: String,
-    /// What is written there.
+    /// The value in the file.
     pub value: Option<String>,
-    /// What may be written there.
+    /// Permitted values.
     pub allowed: Option<String>,
-    /// How to repair it.
+    /// How to correct the error.
     pub hint: Option<String>,
 }
 
-/// All mistakes in a case file, in the order of the file.
+/// All errors in a case file, in the order of the file.
 #[derive(Clone, Debug, PartialEq)]
 pub struct CaseErrors {
     /// Name of the file.
     pub name: String,
-    /// The mistakes, at least one.
+    /// The errors, at least one.
     pub errors: Vec<CaseError>,
     lines: Vec<String>,
 }
@@ -73,7 +73,7 @@ impl CaseError {
         self
     }
 
-    /// Fixes the span to one line of `text`, whose lines begin at `starts`, and derives the rest of the place from it.
+    /// Restricts the span to one line of `text`, whose lines start at `starts`, and computes line and columns from it.
     fn locate(&mut self, text: &str, starts: &[usize]) {
         let start = boundary(text, self.span.start);
         self.line = starts.partition_point(|first| *first <= start);
@@ -99,7 +99,8 @@ impl CaseErrors {
         Self { name: name.to_owned(), errors, lines }
     }
 
-    /// The first messages with the lines they are about and how many more there are, with terminal colours if `color`.
+    /// The first errors with the lines that they refer to, and the number of further ones; with terminal colours if
+    /// `color`.
     pub fn render(&self, color: bool) -> String {
         let renderer = if color { Renderer::styled() } else { Renderer::plain() };
         let mut blocks: Vec<String> =
@@ -147,12 +148,12 @@ pub(super) fn quote(text: &str) -> String {
     short
 }
 
-/// The nearest character boundary at or before `index`.
+/// The nearest character boundary at or before byte `index`.
 fn boundary(text: &str, index: usize) -> usize {
     (0..=index.min(text.len())).rev().find(|&i| text.is_char_boundary(i)).unwrap_or(0)
 }
 
-/// The first line of `text` with control characters made visible, one character for one character.
+/// The first line of `text`, in which every control character is replaced by one visible character.
 fn line_of(text: &str) -> String {
     let line = text.split('\n').next().unwrap_or_default().trim_end_matches('\r');
     line.chars().map(|c| if c.is_control() && c != '\t' { '\u{fffd}' } else { c }).collect()

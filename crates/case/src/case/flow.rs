@@ -1,58 +1,60 @@
-//! Scales of the free stream.
+//! Free stream: reference values and units.
 //!
-//! A perfect gas: p = ρ R T, c = √(γ p/ρ), V = M c. Without dimensional values ρ = 1 and c = 1, hence p = 1/γ.
+//! Perfect gas: p = ρ R T, c = √(γ p/ρ), V = M c. Without dimensional values ρ = 1 and c = 1, hence p = 1/γ.
 use serde::{Deserialize, Serialize};
 
 use super::{Body, Flow, Temperature};
 
-/// Sutherland's constant of air, K (U.S. Standard Atmosphere, 1976).
+/// Sutherland's constant of air [K] (U.S. Standard Atmosphere, 1976).
 const SUTHERLAND: f64 = 110.4;
-/// Temperature of a free stream that states none, K (U.S. Standard Atmosphere, 1976, sea level).
+/// Default temperature of the free stream [K] (U.S. Standard Atmosphere, 1976, sea level).
 const SEA_LEVEL: f64 = 288.15;
 /// Prandtl number of air.
 const PRANDTL: f64 = 0.72;
-/// Reynolds number that no laminar layer on a body survives (Schlichting and Gersten, Boundary-Layer Theory, 15.1).
+/// Reynolds number above which a boundary layer cannot be laminar (Schlichting and Gersten, Boundary-Layer Theory,
+/// section 15.1).
 pub const NEVER_LAMINAR: f64 = 1e7;
-/// Free path of the molecules over the length of a body above which they hardly meet (Bird, Molecular Gas Dynamics, 1.2).
+/// Knudsen number above which the flow is free-molecular (Bird, Molecular Gas Dynamics, section 1.2).
 pub const NO_CONTINUUM: f64 = 10.0;
 
-/// How viscosity depends on temperature.
+/// Temperature dependence of the viscosity.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum ViscosityLaw {
     /// Sutherland's law.
     Sutherland,
-    /// No dependence.
+    /// Constant viscosity.
     Constant,
 }
 
-/// Condition of the gas on the surface of a body.
+/// Wall condition: velocity and temperature of the gas at the surface of a body.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Wall {
-    /// The gas slides along the surface.
+    /// Slip wall: the gas slides along the surface.
     Slip,
-    /// The gas sticks to the surface, no heat passes.
+    /// Adiabatic no-slip wall.
     Adiabatic,
-    /// The gas sticks to a surface of given temperature.
+    /// Isothermal no-slip wall.
     Temperature {
-        /// In kelvin when the free stream is dimensional, else over that of the free stream.
+        /// Wall temperature: in kelvin when the free stream is dimensional, otherwise divided by that of the free
+        /// stream.
         value: Temperature,
     },
 }
 
-/// Viscosity and heat conduction of the gas, in the units of the solver.
+/// Viscosity and heat conduction of the gas in units of the solver.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Viscous {
     /// Dynamic viscosity μ∞ of the free stream.
     pub viscosity: f64,
-    /// S/T∞ of Sutherland's law μ/μ∞ = θ^1.5 (1 + S/T∞)/(θ + S/T∞), θ = T/T∞; `None`: constant viscosity.
+    /// Constant S/T∞ of Sutherland's law μ/μ∞ = θ^1.5 (1 + S/T∞)/(θ + S/T∞) with θ = T/T∞; `None`: constant viscosity.
     pub sutherland: Option<f64>,
     /// Prandtl number μ c_p/λ.
     pub prandtl: f64,
 }
 
-/// The free stream in numbers: dimensional when the case is, else in units of its density and sound speed.
+/// Values of the free stream: in SI units when it is dimensional, otherwise in units of its density and sound speed.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct FreeStreamScales {
     /// Density.
@@ -61,7 +63,7 @@ pub struct FreeStreamScales {
     pub sound_speed: f64,
     /// Static pressure.
     pub pressure: f64,
-    /// Speed of the stream.
+    /// Flow speed.
     pub speed: f64,
     /// Mach number.
     pub mach: f64,
@@ -74,48 +76,48 @@ impl FreeStreamScales {
     }
 }
 
-/// What one unit of the solver is in the case: the free stream has density and sound speed 1 in the solver, lengths are
-/// those of the case, and so its unit of time is a length over the sound speed.
+/// Units of the solver, measured in units of the case. In the solver, the free stream has density 1 and sound speed 1,
+/// and lengths are those of the case. Its unit of time is therefore the unit of length divided by the sound speed.
 ///
-/// Every time, frequency, speed and force of a case passes here on its way in, and on its way out. Without a dimensional free
-/// stream both factors are exactly 1.
+/// Every time, frequency, speed and force of a case is converted here on input and on output. Without a dimensional
+/// free stream, both factors are exactly 1.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Units {
-    /// Density ρ∞.
+    /// Density ρ∞ of the free stream.
     pub density: f64,
-    /// Speed a∞.
+    /// Sound speed a∞ of the free stream.
     pub speed: f64,
 }
 
 impl Units {
-    /// Factor on pressures, on forces, moments and energies: ρ∞ a∞².
+    /// Unit of pressure ρ∞ a∞², which is also the factor on forces, moments and energies.
     pub fn pressure(&self) -> f64 {
         self.density * self.speed * self.speed
     }
 
-    /// The time of the solver that is `time` in the case, in seconds where that is dimensional.
+    /// Converts a time of the case, in seconds when it is dimensional, to a time of the solver.
     pub fn solver_time(&self, time: f64) -> f64 {
         time * self.speed
     }
 
-    /// The time of the case that is `time` in the solver.
+    /// Converts a time of the solver to a time of the case.
     pub fn case_time(&self, time: f64) -> f64 {
         time / self.speed
     }
 
-    /// The speed, frequency or rate of the case that is `rate` in the solver.
+    /// Converts a speed, frequency or rate of the solver to one of the case.
     pub fn case_rate(&self, rate: f64) -> f64 {
         rate * self.speed
     }
 
-    /// The speed, frequency or rate of the solver that is `rate` in the case.
+    /// Converts a speed, frequency or rate of the case to one of the solver.
     pub fn solver_rate(&self, rate: f64) -> f64 {
         rate / self.speed
     }
 }
 
 impl Flow {
-    /// Factors from the units of the solver to those of the case.
+    /// Conversion factors between units of the solver and units of the case.
     pub fn units(&self) -> Units {
         if !self.is_dimensional() {
             return Units { density: 1.0, speed: 1.0 };
@@ -126,7 +128,7 @@ impl Flow {
 
     /// Density, sound speed, pressure, speed and Mach number of the free stream.
     ///
-    /// Without `mach` and `velocity` (cases that start from their own field) the stream is at rest.
+    /// The speed is zero when neither `mach` nor `velocity` is given, as in cases with an initial field of their own.
     pub fn reference(&self) -> FreeStreamScales {
         let (density, pressure) = self.state();
         let sound_speed = (self.gamma * pressure / density).sqrt();
@@ -137,17 +139,17 @@ impl Flow {
         FreeStreamScales { density, sound_speed, pressure, speed, mach }
     }
 
-    /// True when the free stream has units.
+    /// True when the free stream is dimensional.
     pub fn is_dimensional(&self) -> bool {
         [self.pressure.is_some(), self.temperature.is_some(), self.density.is_some()].iter().filter(|g| **g).count() > 1
     }
 
-    /// True when the gas has viscosity.
+    /// True when the gas is viscous.
     pub fn is_viscous(&self) -> bool {
         self.reynolds.is_some() || self.viscosity.is_some()
     }
 
-    /// Viscosity and heat conduction, `None` for an inviscid gas; `chord` is the reference chord.
+    /// Viscosity and heat conduction; `None` for an inviscid gas. `chord` is the reference chord.
     pub fn viscous(&self, chord: f64) -> Option<Viscous> {
         let scales = self.reference();
         let from_reynolds = self.reynolds.map(|re| scales.density * scales.speed * self.viscous_length(chord) / re);
@@ -159,28 +161,28 @@ impl Flow {
         })
     }
 
-    /// Length of the Reynolds number: its own, else the reference chord.
+    /// Reference length of the Reynolds number: `reynolds_length`, or the reference chord.
     pub fn viscous_length(&self, chord: f64) -> f64 {
         self.reynolds_length.map_or(chord, |l| l.0)
     }
 
-    /// Reynolds number of the stream; `None` without viscosity.
+    /// Reynolds number of the free stream; `None` for an inviscid gas.
     pub fn reynolds_number(&self, chord: f64) -> Option<f64> {
         let (viscous, stream) = (self.viscous(chord)?, self.reference());
         Some(stream.density * stream.speed * self.viscous_length(chord) / viscous.viscosity)
     }
 
-    /// Free path of the molecules over the length of the Reynolds number, Kn = M/Re √(πγ/2).
+    /// Knudsen number Kn = M/Re √(πγ/2): mean free path divided by the reference length of the Reynolds number.
     pub fn free_path(&self, reynolds: f64, mach: f64) -> f64 {
         mach / reynolds * (0.5 * std::f64::consts::PI * self.gamma).sqrt()
     }
 
-    /// Condition on the surface of `body`.
+    /// Wall condition of `body`.
     pub fn wall(&self, body: &Body) -> Wall {
         body.wall.unwrap_or(if self.is_viscous() { Wall::Adiabatic } else { Wall::Slip })
     }
 
-    /// Temperature of the free stream in kelvin, 288.15 K when the case states none.
+    /// Temperature of the free stream [K]; 288.15 K when the case gives none.
     pub fn kelvin(&self) -> f64 {
         let from_gas_law = || {
             let (density, pressure) = self.state();
@@ -193,7 +195,7 @@ impl Flow {
         }
     }
 
-    /// Density and pressure.
+    /// Density and pressure of the free stream.
     fn state(&self) -> (f64, f64) {
         let r = self.gas_constant;
         match (self.pressure, self.temperature, self.density) {

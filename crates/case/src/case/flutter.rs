@@ -1,4 +1,4 @@
-//! Flutter boundaries: at which Mach numbers, with what accuracy, as data.
+//! Flutter analysis, as data: Mach numbers, matching, accuracy and options.
 pub(super) mod check;
 pub(super) mod keys;
 mod limit_cycles;
@@ -10,52 +10,54 @@ pub use limit_cycles::{GasResponse, LimitCycles};
 use super::quantity::Velocity;
 use super::{Case, Motion, ParticleMotion, Steady, Temporal, Time};
 
-/// The table `[flutter]`.
+/// The table `[flutter]`: settings of the flutter analysis.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Flutter {
-    /// Mach numbers; empty: that of `[flow]`.
+    /// Mach numbers; empty: the one of `[flow]`.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub mach: Vec<f64>,
-    /// Reduced frequencies that forces are computed at first; empty: those of [`Self::first`].
+    /// Reduced frequencies at which forces are computed first; empty: those of [`Self::first`].
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub reduced_frequencies: Vec<f64>,
-    /// What is varied.
+    /// The quantity of the stream that is varied.
     #[serde(rename = "match")]
     pub matching: Matching,
-    /// Greatest speed looked at, over that of the structure; in a tunnel density over that of the case.
+    /// Upper bound of the search: speed relative to that of the structure, or density relative to that of the case
+    /// where density is varied.
     pub most: f64,
-    /// Part by which two successive interpolations may differ in a speed.
+    /// Relative difference of the flutter speed between two successive interpolations at which the refinement ends.
     pub accuracy: f64,
-    /// Greatest number of frequencies.
+    /// Greatest number of reduced frequencies.
     pub frequencies: u32,
-    /// Forces are those about the static equilibrium of structure and gas at the first crossing.
+    /// True when forces are computed about the static aeroelastic equilibrium at the first flutter point.
     pub trim: bool,
-    /// The structure in the stream is also written as a linear system of first order.
+    /// True when the aeroelastic system is also written in state-space form.
     pub state_space: bool,
-    /// The limiter stays what it is in the steady flow.
+    /// True when the limiter keeps the values of the steady flow.
     pub frozen_limiter: bool,
-    /// Crossings and damping are sought on a coarser cloud as well.
+    /// True when flutter points and damping are also computed on a coarser cloud, for an error estimate.
     pub cloud_error: bool,
-    /// V_D, an equivalent airspeed that margins are told against.
+    /// Design dive speed V_D as equivalent airspeed, relative to which margins are reported.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub design_speed: Option<Velocity>,
 }
 
-/// How the stream is varied at one Mach number.
+/// Quantity of the stream that is varied at constant Mach number (matching).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Matching {
-    /// Speed and sound speed, at the density of the case.
+    /// Speed and sound speed at the density of the case; the atmosphere is not matched.
     #[default]
     None,
-    /// Density, at the sound speed of the case.
+    /// Density at the sound speed of the case, as in a wind tunnel.
     Density,
-    /// Altitude in the standard atmosphere, and density and sound speed with it.
+    /// Altitude in the standard atmosphere, which determines density and sound speed.
     Altitude,
 }
 
 impl Flutter {
-    /// Reduced frequencies that forces are computed at first, rising: from almost steady to twice what sections flutter at.
+    /// Reduced frequencies at which forces are computed first, ascending, from nearly steady to twice the usual flutter
+    /// value of sections.
     pub fn first(&self) -> Vec<f64> {
         const USUAL: [f64; 4] = [0.02, 0.08, 0.2, 0.5];
         let mut all =
@@ -65,26 +67,27 @@ impl Flutter {
         all
     }
 
-    /// Frequencies that forces are computed at, about: those at first, at rest, and two near a crossing.
+    /// Expected number of reduced frequencies: the first ones, zero, and two near a flutter point.
     pub fn expected(&self) -> usize {
         (self.first().len() + 3).min(self.frequencies.max(1) as usize)
     }
 }
 
 impl Case {
-    /// True where the limiter stays in small motions what it is in the steady flow.
+    /// True when the limiter keeps the values of the steady flow in small motions.
     pub fn freezes_limiter(&self) -> bool {
         self.flutter.as_ref().is_some_and(|f| f.frozen_limiter) || self.gaf.as_ref().is_some_and(|g| g.frozen_limiter)
     }
 
-    /// True where forces are sought about the static equilibrium of structure and gas.
+    /// True when forces are computed about the static aeroelastic equilibrium.
     pub fn is_trimmed(&self) -> bool {
         self.flutter.as_ref().is_some_and(|f| f.trim)
     }
 
-    /// The steady flow on the cloud of the case, so far converged that small motions about it can be told; `particles` follow bodies.
+    /// The steady case on the same cloud, converged tightly enough for linearised motions about it; `particles` follow
+    /// the bodies.
     pub fn settled_case(&self, particles: ParticleMotion) -> Self {
-        /// Orders that the residual falls by: what is left of it is a force that does not belong to the motion.
+        /// Orders by which the residual falls; the remaining residual acts as a spurious force.
         const ORDERS: f64 = 9.0;
         let mut case = self.clone();
         let steady = if let Temporal::Steady(steady) = &self.time { steady.clone() } else { Steady::default() };
@@ -94,7 +97,7 @@ impl Case {
         case
     }
 
-    /// About the period of a free motion of structures that a march is to find.
+    /// Estimated period of the free vibration of structures that a march is to find.
     pub fn swing(&self) -> Option<Time> {
         match &self.time {
             Temporal::Dual(dual) => dual.swing,

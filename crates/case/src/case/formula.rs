@@ -1,17 +1,18 @@
-//! Formulas in time, as a case file writes them: `0.1 * sin(omega * t)`.
+//! Formulas of time in a case file, for example `0.1 * sin(omega * t)`.
 //!
-//! The grammar is that of a desk calculator: `+ - * / ^`, parentheses, functions of one or two arguments, the names `t`
-//! (time), `omega` (angular frequency of the motion), `pi`, `e` and `deg` (one degree in radians), of places `x`, `y` and `z`. A power binds tighter
-//! than a sign, −t² is −(t²), and groups from the right. [`Formula::parse`] only builds the tree; what evaluates it
-//! chooses the numbers, so that derivatives come from the same tree (`motion::time_function`).
+//! The grammar is that of a calculator: `+ - * / ^`, parentheses, functions of one or two arguments, the names `t`
+//! (time), `omega` (angular frequency of the motion), `pi`, `e` and `deg` (one degree in radians), and, in formulas of
+//! position, `x`, `y` and `z`. A power has precedence over a sign, −t² is −(t²), and groups from the right.
+//! [`Formula::parse`] only builds the syntax tree. Its evaluation is generic in the type of number, so that derivatives
+//! come from the same tree (`motion::time_function`).
 use std::ops::Range;
 
 use super::quantity::DEGREE;
 
-/// Deepest nesting: a bound on recursion, far above what anyone writes.
+/// Greatest depth of nesting, which bounds the recursion; far above any useful formula.
 const DEEPEST: usize = 64;
 
-/// A formula as a tree.
+/// A formula as a syntax tree.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Formula {
     /// A number.
@@ -20,9 +21,9 @@ pub enum Formula {
     Time,
     /// Angular frequency of the motion.
     Omega,
-    /// A coordinate of the place, 0 for x: only in formulas of the place.
+    /// A coordinate of the position, 0 for x; permitted only in formulas of position.
     Coordinate(usize),
-    /// Minus the argument.
+    /// Negation of the argument.
     Negative(Box<Formula>),
     /// A function of one argument.
     Call(Function, Box<Formula>),
@@ -62,15 +63,15 @@ pub enum Operation {
     Max,
 }
 
-/// Why a text is no formula, and which bytes of it are to blame.
+/// Reason why a text is not a formula, and the bytes that cause it.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[error("{message}")]
 pub struct FormulaError {
-    /// Bytes of the text.
+    /// Range of bytes of the text.
     pub span: Range<usize>,
-    /// What is wrong.
+    /// Description of the error.
     pub message: String,
-    /// What could be written instead, if the place says it.
+    /// Permitted text at this position, if it is known.
     pub allowed: Option<String>,
 }
 
@@ -94,12 +95,12 @@ const NAMES: [&str; 5] = ["t", "omega", "pi", "e", "deg"];
 const COORDINATES: [&str; 3] = ["x", "y", "z"];
 
 impl Formula {
-    /// The formula in time written in `text`.
+    /// Parses a formula of time.
     pub fn parse(text: &str) -> Result<Self, FormulaError> {
         Self::parse_in(text, 0)
     }
 
-    /// The formula written in `text`, which may name the first `coordinates` of x, y and z as well.
+    /// Parses a formula of time and of the first `coordinates` of x, y and z.
     pub fn parse_in(text: &str, coordinates: usize) -> Result<Self, FormulaError> {
         let mut parser = Parser { text, at: 0, depth: 0, coordinates: &COORDINATES[..coordinates.min(3)] };
         let formula = parser.sum()?;
@@ -110,12 +111,12 @@ impl Formula {
         }
     }
 
-    /// The number at time `t` with the angular frequency `omega`.
+    /// Value at time `t` with the angular frequency `omega`.
     pub fn value(&self, t: f64, omega: f64) -> f64 {
         self.value_at(&[], t, omega)
     }
 
-    /// The number at the place `x` and time `t`; coordinates that the place lacks are zero.
+    /// Value at the position `x` and time `t`; missing coordinates are zero.
     pub fn value_at(&self, x: &[f64], t: f64, omega: f64) -> f64 {
         let inner = |a: &Self| a.value_at(x, t, omega);
         match self {
@@ -129,7 +130,7 @@ impl Formula {
         }
     }
 
-    /// True when some part of the formula satisfies `wanted`.
+    /// True when the tree contains the node `wanted`.
     pub fn contains(&self, wanted: &Self) -> bool {
         self == wanted
             || match self {
@@ -139,14 +140,14 @@ impl Formula {
             }
     }
 
-    /// All names that a formula may use.
+    /// All names that a formula may contain.
     pub fn vocabulary() -> impl Iterator<Item = &'static str> {
         NAMES.into_iter().chain(FUNCTIONS.map(|f| f.0)).chain(PAIRS.map(|f| f.0))
     }
 }
 
 impl Function {
-    /// The function at `x`.
+    /// Value of the function at `x`.
     pub fn value(self, x: f64) -> f64 {
         match self {
             Self::Sin => x.sin(),
@@ -167,7 +168,7 @@ impl Function {
 }
 
 impl Operation {
-    /// The result for the arguments `x` and `y`.
+    /// Result of the operation on `x` and `y`.
     pub fn value(self, x: f64, y: f64) -> f64 {
         match self {
             Self::Add => x + y,
@@ -244,7 +245,7 @@ impl Parser<'_> {
         self.deeper(|p| Ok(pair(Operation::Power, base, p.signed()?)))
     }
 
-    /// Takes one character and parses what follows one level deeper.
+    /// Consumes one character and parses what follows, one level of nesting deeper.
     fn deeper(&mut self, parse: impl FnOnce(&mut Self) -> Parsed) -> Parsed {
         if self.depth == DEEPEST {
             return Err(self.wrong_char("the formula is nested too deeply"));
@@ -322,7 +323,7 @@ impl Parser<'_> {
         Err(self.wrong(span, format!("unknown name `{name}` in a formula")))
     }
 
-    /// The arguments of the function written at `name`.
+    /// Parses the arguments of the function whose name is at `name`.
     fn arguments(&mut self, name: &Range<usize>, two: bool) -> Result<(Formula, Option<Formula>), FormulaError> {
         let called = &self.text[name.clone()];
         if self.peek() != Some('(') {
@@ -354,7 +355,7 @@ impl Parser<'_> {
         }
     }
 
-    /// The next character that is no space, not taken.
+    /// The next character that is not a space, without consuming it.
     fn peek(&mut self) -> Option<char> {
         let rest = &self.text[self.at..];
         self.at += rest.len() - rest.trim_start().len();

@@ -1,4 +1,4 @@
-//! Generalised aerodynamic forces: which modes at which frequencies, as data.
+//! Generalised aerodynamic forces, as data: modes, reduced frequencies and method.
 use serde::{Deserialize, Serialize};
 
 use super::{
@@ -6,50 +6,51 @@ use super::{
     ParticleMotion, Pitch, Plunge, SteadyMethod, Structure, StructureMode, StructureModel, Temporal,
 };
 
-/// The table `[gaf]`.
+/// The table `[gaf]`: settings of the generalised aerodynamic forces.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Gaf {
     /// Reduced frequencies k = ωL/U∞.
     pub reduced_frequencies: Vec<f64>,
-    /// Length L; absent: half the reference chord.
+    /// Length L of the reduced frequency; absent: half the reference chord.
     pub reduced_length: Option<Length>,
-    /// Rigid modes, in the order of the columns.
+    /// Rigid-body modes, in the order of the columns.
     pub modes: Vec<Mode>,
-    /// Modes of a flexible body, behind them.
+    /// Flexible modes, in the columns after the rigid-body modes.
     #[serde(default, rename = "mode")]
     pub flexible: Vec<FlexibleMode>,
-    /// Point about which the body pitches, and moments are taken.
+    /// Centre of rotation of pitch, about which moments are taken.
     pub pivot: Option<Vec<Length>>,
-    /// How forces are found.
+    /// Method by which the forces are computed.
     pub method: GafMethod,
-    /// Amplitude of pitch; absent: [`Self::PITCH`].
+    /// Amplitude of pitch for the harmonic balance; absent: [`Self::PITCH`].
     pub pitch: Option<Angle>,
-    /// Amplitude of plunge; absent: [`Self::PLUNGE`].
+    /// Amplitude of plunge for the harmonic balance; absent: [`Self::PLUNGE`].
     pub plunge: Option<Length>,
-    /// How particles follow plunge and pitch.
+    /// How the particles follow plunge and pitch.
     pub particles: ParticleMotion,
     /// Number of harmonics; absent: one.
     pub harmonics: Option<u32>,
-    /// Change of a column, when the amplitude is halved, above which it is told to be nonlinear; absent: [`Self::LINEARITY`].
+    /// Relative change of a column on halving the amplitude above which it is reported as nonlinear; absent:
+    /// [`Self::LINEARITY`].
     pub linearity: Option<f64>,
-    /// The limiter stays what it is in the steady flow.
+    /// True when the limiter keeps the values of the steady flow.
     #[serde(default)]
     pub frozen_limiter: bool,
-    /// The entries of the matrices have error bars, from a cloud with twice the spacing.
+    /// True when the matrices have error bars, computed on a cloud with twice the spacing.
     pub cloud_error: bool,
 }
 
-/// How forces are found.
+/// Method by which generalised aerodynamic forces are computed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum GafMethod {
-    /// Small motion about one steady flow: a linear system for each mode and frequency.
+    /// Linearisation about the steady flow: one linear system for each mode and frequency.
     Linear,
-    /// Two harmonic balances for each mode and frequency, with an amplitude and half of it.
+    /// Two harmonic balances for each mode and frequency, with the full and half the amplitude.
     Balance,
 }
 
-/// A mode of a rigid body.
+/// A rigid-body mode.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Mode {
@@ -59,28 +60,28 @@ pub enum Mode {
     Pitch,
 }
 
-/// A mode of a flexible body.
+/// A flexible mode.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct FlexibleMode {
-    /// Name.
+    /// Name of the mode.
     pub name: String,
-    /// File of its shape, see [`super::read_mode`].
+    /// File of the mode shape, see [`super::read_mode`].
     pub file: String,
-    /// Amplitude of its coordinate; there is one where forces are found by harmonic balance.
+    /// Amplitude of the modal coordinate; required by the harmonic balance.
     pub amplitude: Option<f64>,
 }
 
-/// Any mode of `[gaf]`.
+/// A mode of `[gaf]`, rigid or flexible.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum AnyMode<'a> {
-    /// Of a rigid body.
+    /// A rigid-body mode.
     Rigid(Mode),
-    /// Of a flexible one.
+    /// A flexible mode.
     Flexible(&'a FlexibleMode),
 }
 
 impl Mode {
-    /// The word of the case file.
+    /// Name of the mode in the case file.
     pub fn name(self) -> &'static str {
         match self {
             Self::Plunge => "plunge",
@@ -90,7 +91,7 @@ impl Mode {
 }
 
 impl AnyMode<'_> {
-    /// Its name.
+    /// Name of the mode.
     pub fn name(&self) -> &str {
         match self {
             Self::Rigid(mode) => mode.name(),
@@ -100,22 +101,22 @@ impl AnyMode<'_> {
 }
 
 impl Gaf {
-    /// Amplitude of pitch in a harmonic balance unless the case says otherwise: a quarter of a degree, in radians.
+    /// Default amplitude of pitch in a harmonic balance: a quarter of a degree, in radians.
     pub const PITCH: Angle = Angle(0.25 * std::f64::consts::PI / 180.0);
-    /// Amplitude of plunge, in units of the case.
+    /// Default amplitude of plunge in a harmonic balance, in units of the case.
     pub const PLUNGE: Length = Length(0.005);
-    /// Part by which forces may change when the amplitude is halved.
+    /// Default relative change of the forces that is permitted when the amplitude is halved.
     pub const LINEARITY: f64 = 0.005;
 
-    /// All modes, in the order of rows and columns.
+    /// All modes in the order of rows and columns.
     pub fn all_modes(&self) -> impl Iterator<Item = AnyMode<'_>> {
         self.modes.iter().map(|m| AnyMode::Rigid(*m)).chain(self.flexible.iter().map(AnyMode::Flexible))
     }
 }
 
 impl Case {
-    /// The harmonic balance of one mode at reduced frequency `k`, with `factor` times the amplitude of `[gaf]`. The table stays
-    /// in the case: its modes are those that forces are computed on.
+    /// The harmonic balance of one mode at the reduced frequency `k`, with `factor` times the amplitude of `[gaf]`. The
+    /// case keeps the table, because generalised forces are evaluated for its modes.
     pub fn gaf_case(&self, gaf: &Gaf, mode: AnyMode<'_>, k: f64, factor: f64) -> Self {
         let (none, harmonics) = (Angle(0.0), gaf.harmonics.unwrap_or(1));
         let mut law = BodyMotionSpec {
@@ -164,8 +165,9 @@ impl Case {
         case
     }
 
-    /// The steady flow about which the forces of small motions in all modes of `gaf` are asked. All bodies share one structure, which
-    /// stays where it is; its masses and springs have no part in the forces. A rigid cloud follows rigid modes alone.
+    /// The steady case about which the forces in all modes of `gaf` are linearised. All bodies belong to one structure
+    /// at rest, whose masses and springs do not affect the forces. If all modes are rigid-body modes, the cloud moves
+    /// rigidly.
     pub fn gaf_steady_case(&self, gaf: &Gaf) -> Self {
         let particles = if gaf.flexible.is_empty() { gaf.particles } else { ParticleMotion::Deforming };
         let mut case = self.settled_case(particles);
@@ -179,7 +181,7 @@ impl Case {
 }
 
 impl Gaf {
-    /// The modes as coordinates of one structure, in the order of the columns, each with mass and spring of one.
+    /// The modes as coordinates of one structure in the order of the columns, with unit masses and stiffnesses.
     fn structure(&self) -> Structure {
         let freedom = |mode: &Mode| match mode {
             Mode::Plunge => Freedom::Plunge,

@@ -1,7 +1,8 @@
-//! The case: plain data that says what to compute. It knows no solver type.
+//! The case: plain data that define a computation. This module knows no solver type.
 //!
-//! A case file is TOML; [`read()`] tells all its mistakes at once, [`write()`] is its inverse. [`Case`] is its resolved form: every default
-//! filled in, every quantity in base units. Angles are radians, lengths are in the unit of the geometry (metres when the free stream is dimensional).
+//! A case file is written in TOML. [`read()`] reports all errors in it at once; [`write()`] is its inverse. [`Case`] is
+//! the resolved form: every default is filled in and every quantity is in base units. Angles are in radians; lengths
+//! are in the unit of the geometry, which is the metre when the free stream is dimensional.
 use serde::{Deserialize, Serialize};
 
 mod accuracy;
@@ -84,132 +85,132 @@ pub use verdict::ClaimRow;
 pub use wing::{PlanformShape, ProfileSides, Tip, Wing, WingSides};
 pub use write::{write, write_cloud};
 
-/// Everything a run needs to know.
+/// A resolved case: all that defines a computation.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Case {
-    /// One line that names the case in reports.
+    /// Title of the case, one line, for reports.
     pub title: String,
-    /// Number of space dimensions, 2 or 3; taken from the bodies or the domain when absent: [`read()`] always fills it in.
+    /// Number of space dimensions, 2 or 3. When absent, [`read()`] derives it from the bodies or the domain.
     pub dimension: Option<u8>,
-    /// Free stream; of a polar that of its first point.
+    /// Free stream; for a polar, that of its first point.
     pub flow: Flow,
-    /// Values of a polar, where `alpha` or `mach` is a list in the file.
+    /// Values of a polar, when `alpha` or `mach` is a list in the file.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub polar: Option<Polar>,
     /// Motion of bodies and particles; absent: only bodies with a motion of their own move.
     pub motion: Option<Motion>,
-    /// Solid bodies, none for a case without walls.
+    /// Bodies; empty for a case without walls.
     #[serde(default, rename = "body")]
     pub bodies: Vec<Body>,
-    /// Bodies on springs, whose coordinates are unknowns.
+    /// Elastically supported or flexible bodies, whose coordinates are unknowns.
     #[serde(default, rename = "structure")]
     pub structures: Vec<Structure>,
-    /// Contact of bodies made of particles; absent: they pass through one another.
+    /// Contact between deformable solids; absent: no contact forces.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub contact: Option<Contact>,
     /// Reference lengths of the load coefficients.
     #[serde(default)]
     pub reference: Reference,
-    /// How particles fill the domain.
+    /// Distribution of the particles in the domain.
     pub cloud: Cloud,
-    /// How well the loads of a steady case are to be known.
+    /// Required accuracy of the loads of a steady case.
     pub accuracy: Option<Accuracy>,
-    /// Conditions on the sides of the domain.
+    /// Boundary conditions on the sides of the domain.
     #[serde(default)]
     pub boundary: Sides,
-    /// Field at the start.
+    /// Initial field.
     #[serde(default)]
     pub initial: Initial,
-    /// Spatial scheme.
+    /// Spatial discretisation.
     #[serde(default)]
     pub scheme: Scheme,
-    /// Steady relaxation or time marching.
+    /// Steady relaxation, time marching or harmonic balance.
     #[serde(default)]
     pub time: Temporal,
-    /// Refinement that follows the solution.
+    /// Solution-adaptive refinement.
     #[serde(default)]
     pub adapt: Adapt,
-    /// What is written, and how often.
+    /// Output files and their intervals.
     #[serde(default)]
     pub output: Output,
-    /// Reference curves that the report draws beside the result.
+    /// Reference curves for the report.
     #[serde(default)]
     pub compare: Vec<Compare>,
-    /// Hinges about which moments are told.
+    /// Hinge lines about which hinge moments are evaluated.
     #[serde(default)]
     pub hinge: Vec<Hinge>,
-    /// What `alula gaf` computes.
+    /// Settings of `alula gaf` (generalised aerodynamic forces).
     pub gaf: Option<Gaf>,
-    /// What `alula flutter` seeks.
+    /// Settings of `alula flutter`.
     pub flutter: Option<Flutter>,
-    /// The limit cycles that it seeks beside it.
+    /// Settings of the limit-cycle analysis, which extends the flutter analysis.
     pub lco: Option<LimitCycles>,
 }
 
-/// Free stream: either `mach` alone (nondimensional: density 1, sound speed 1) or dimensional values.
+/// Free stream, given by `mach` alone (nondimensional: density 1 and sound speed 1) or by dimensional values.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Flow {
     /// Mach number.
     pub mach: Option<f64>,
-    /// Speed; an alternative to `mach` when the free stream is dimensional.
+    /// Speed [m/s]; an alternative to `mach` when the free stream is dimensional.
     pub velocity: Option<Velocity>,
-    /// Static pressure.
+    /// Static pressure [Pa].
     pub pressure: Option<Pressure>,
-    /// Static temperature.
+    /// Static temperature [K].
     pub temperature: Option<Temperature>,
-    /// Density; an alternative to `temperature`.
+    /// Density [kg/m³]; an alternative to `temperature`.
     pub density: Option<Density>,
-    /// Specific gas constant, J/(kg K), 287.05 for air.
+    /// Specific gas constant [J/(kg K)], 287.05 for air.
     pub gas_constant: f64,
     /// Ratio of specific heats, 1.4 for air.
     pub gamma: f64,
-    /// The gas keeps the entropy of the free stream.
+    /// True when the entropy of the gas is constant and equal to that of the free stream.
     #[serde(default)]
     pub isentropic: bool,
-    /// Angle of attack, nose up positive: the flow turns from +x towards +y in 2-D, towards +z in 3-D.
+    /// Angle of attack [rad], nose up positive: the velocity turns from +x towards +y in 2-D, towards +z in 3-D.
     #[serde(default)]
     pub alpha: Angle,
-    /// Sideslip angle, 3-D only: the flow turns towards +y.
+    /// Sideslip angle [rad], 3-D only: the velocity turns towards +y.
     #[serde(default)]
     pub beta: Angle,
-    /// Reynolds number of `reynolds_length`; absent, as `viscosity`: no viscosity.
+    /// Reynolds number based on `reynolds_length`; the flow is inviscid when this and `viscosity` are absent.
     pub reynolds: Option<f64>,
-    /// Length of the Reynolds number; absent: the reference chord.
+    /// Reference length of the Reynolds number; absent: the reference chord.
     pub reynolds_length: Option<Length>,
-    /// Dynamic viscosity of the free stream, an alternative to `reynolds` when the free stream is dimensional.
+    /// Dynamic viscosity of the free stream [Pa s]; an alternative to `reynolds` when the free stream is dimensional.
     pub viscosity: Option<Viscosity>,
-    /// How viscosity depends on temperature; absent: Sutherland's law.
+    /// Temperature dependence of the viscosity; absent: Sutherland's law.
     pub viscosity_law: Option<ViscosityLaw>,
-    /// Constant of Sutherland's law; absent: 110.4 K, air.
+    /// Sutherland's constant [K]; absent: 110.4 K, air.
     pub sutherland: Option<Temperature>,
     /// Prandtl number; absent: 0.72, air.
     pub prandtl: Option<f64>,
 }
 
-/// One solid body: exactly one shape key, then placement.
+/// A body: exactly one shape key, followed by its placement.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Body {
-    /// Name used in tables of loads; [`read()`] fills in `body-1`, `body-2`, … when absent.
+    /// Name in tables of loads; when absent, [`read()`] assigns `body-1`, `body-2`, …
     pub name: Option<String>,
     /// Geometry.
     #[serde(flatten)]
     pub shape: Shape,
-    /// Placement: scale first, then rotation about the origin of the shape, then translation.
+    /// Placement: scaling, then rotation about the origin of the shape, then translation.
     #[serde(flatten)]
     pub placement: Placement,
-    /// Distance up to which vertices of a surface file are joined; absent: as little as closes the surface, a ten thousandth of its
-    /// size at most.
+    /// Distance up to which vertices of a surface file are merged; absent: the smallest distance that closes the
+    /// surface, at most a ten thousandth of its size.
     pub weld: Option<Length>,
-    /// Condition of the gas on the surface; absent: slip without viscosity, adiabatic with.
+    /// Wall condition; absent: slip for an inviscid gas, adiabatic no-slip for a viscous one.
     pub wall: Option<Wall>,
-    /// Motion of its own, in place of that of `[motion]`; an empty one keeps the body at rest.
+    /// Motion of this body, which replaces that of `[motion]`; an empty table keeps the body at rest.
     pub motion: Option<BodyMotionSpec>,
-    /// What makes it deform; absent: it is rigid, or bends in modes.
+    /// Material and discretisation of a deformable body; absent: the body is rigid, or deforms in modes.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub solid: Option<Solid>,
 }
 
-/// What a body is made of. In the file this is one key of the body table.
+/// Shape of a body. In the file, each variant is a key of the body table.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Shape {
@@ -226,7 +227,7 @@ pub enum Shape {
     },
     /// Ellipse centred on the origin of the shape (2-D), `ellipse = { size = [1, 0.12] }`.
     Ellipse {
-        /// Lengths of its axes along x and y.
+        /// Lengths of the axes along x and y.
         size: [Length; 2],
     },
     /// Sphere (3-D), `sphere = { radius = 0.5 }`.
@@ -241,27 +242,27 @@ pub enum Shape {
     },
     /// STL, OBJ or PLY file, `surface = "wing.stl"`.
     Surface(String),
-    /// Wing, tail or fin by planform and sections.
+    /// Wing, tail or fin, given by its planform and sections.
     Wing(Box<Wing>),
     /// Body of revolution about the x axis.
     Revolution {
-        /// Points x, r from the nose to the rear.
+        /// Points (x, r) from the nose to the rear.
         profile: Vec<[f64; 2]>,
-        /// What joins them.
+        /// Curve through the points.
         sides: ProfileSides,
     },
-    /// Body along the x axis with oval or boxy sections.
+    /// Body along the x axis with oval or rounded rectangular cross-sections.
     Loft {
-        /// Sections x, width, height and, where it is not zero, z of the middle, from the nose to the rear.
+        /// Cross-sections (x, width, height and optionally z of the centre) from the nose to the rear.
         stations: Vec<Vec<f64>>,
-        /// n of the sections |2y/width|ⁿ + |2z/height|ⁿ = 1.
+        /// Exponent n of the cross-sections |2y/width|ⁿ + |2z/height|ⁿ = 1.
         exponent: f64,
-        /// What joins them.
+        /// Curve through the cross-sections.
         sides: ProfileSides,
     },
     /// Ellipsoid centred on the origin of the shape.
     Ellipsoid {
-        /// Lengths of its axes.
+        /// Lengths of the three axes.
         size: [Length; 3],
     },
 }
@@ -269,63 +270,68 @@ pub enum Shape {
 /// Placement of a body.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Placement {
-    /// Length of one unit of the shape, so a factor on its coordinates; the chord of an airfoil of unit chord.
+    /// Length of one unit of the shape: a factor on its coordinates. For an airfoil of unit chord this is the chord.
     pub scale: f64,
-    /// Rotation: one angle in 2-D (nose up positive about the origin of the shape), three in 3-D (about x, y, z); empty:
-    /// none.
+    /// Rotation: one angle in 2-D (nose up positive, about the origin of the shape), three in 3-D (about x, y, z);
+    /// empty: no rotation.
     pub rotate: Vec<Angle>,
-    /// Translation after scaling and rotation; empty: none.
+    /// Translation after scaling and rotation; empty: no translation.
     pub translate: Vec<Length>,
 }
 
-/// Reference quantities of the coefficients.
+/// Reference quantities of the load coefficients.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Reference {
-    /// Length of the moment coefficient (and of CL, CD in 2-D); default: the chord line of the section, in 3-D the mean aerodynamic chord of
-    /// the largest wing, else of what is seen from above.
+    /// Reference length of the moment coefficient, and of CL and CD in 2-D. Default: the chord of the section; in 3-D
+    /// the mean aerodynamic chord of the largest wing, or that of the projection on the xy plane when there is no wing.
     pub chord: Option<Length>,
-    /// Area of the coefficients in 3-D (in units of length squared); default: that of the planform.
+    /// Reference area in 3-D, in squared units of length; default: the planform area.
     pub area: Option<f64>,
-    /// Name of the body whose planform gives what is not given, in 3-D; default: the largest wing, else all of them.
+    /// Name of the body whose planform defines the missing values in 3-D; default: the largest wing, or all bodies when
+    /// there is no wing.
     pub body: Option<String>,
-    /// Point about which moments are taken; default: the quarter of that chord.
+    /// Point about which moments are taken; default: the quarter-chord point.
     pub moment_point: Option<Vec<Length>>,
 }
 
-/// How particles fill the domain.
+/// Distribution of the particles in the domain. Lengths are in the unit of the geometry.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Cloud {
-    /// Particle spacing at the surface; of the whole domain when there is no body. Absent: chosen from the size of the bodies.
+    /// Particle spacing at the surface, or in the whole domain when there is no body; absent: chosen from the size of
+    /// the bodies.
     pub spacing: Option<Length>,
-    /// Half-width of the far field around the bodies; not beside `domain`. Default 40 chords (2-D), 10 (3-D).
+    /// Half-width of the far field around the bodies; not together with `domain`. Default: 40 chords (2-D), 10 chords
+    /// (3-D).
     pub far_field: Option<Length>,
-    /// Explicit domain; its sides must be whole numbers of `coarse` cells.
+    /// Explicit domain, whose sides must be whole multiples of `spacing`.
     pub domain: Option<Domain>,
-    /// Particles per level of refinement, counted away from the surface; default 6; without `spacing` 12, in 3-D 8.
+    /// Number of particles across each level of refinement, counted away from the surface. Default: 6; without
+    /// `spacing` 12, in 3-D 8.
     pub layers: Option<f64>,
-    /// Extra levels of refinement at sharp edges; default 2.
+    /// Number of additional levels of refinement at sharp edges; default 2.
     pub edge_levels: u32,
-    /// Spacing is at most this fraction of the local radius of curvature (never finer than `curvature_levels`);
+    /// Upper bound of the spacing as a fraction of the local radius of curvature, limited by `curvature_levels`;
     /// default 0.125.
     pub curvature: f64,
-    /// Greatest number of extra levels that curvature may ask for; default 3.
+    /// Greatest number of additional levels of refinement due to curvature; default 3.
     pub curvature_levels: u32,
-    /// Boxes with their own spacing.
+    /// Boxes with a spacing of their own.
     #[serde(default, rename = "box")]
     pub boxes: Vec<RefineBox>,
     /// Refinement behind the bodies along the free stream.
     pub wake: Option<Wake>,
-    /// Layers of particles along the walls; default none.
+    /// Layers of particles along the walls; default: none.
     pub wall_layers: Option<WallLayers>,
-    /// Fluid particles nearer to the wall than this fraction of the local spacing are left out; default 0.4.
+    /// Clearance of fluid particles from the wall as a fraction of the local spacing; default 0.4.
     pub blank: f64,
-    /// Radius of the clouds near the wall in local spacings; default 1.6.
+    /// Radius of the neighbour lists near walls in local spacings; default 1.6.
     pub radius: f64,
-    /// Random displacement of interior particles as a fraction of the local spacing (for tests of robustness); default 0.
+    /// Amplitude of the random displacement of interior particles as a fraction of the local spacing, for tests of
+    /// robustness; default 0.
     pub jitter: f64,
 }
 
-/// An explicit domain.
+/// An explicit rectangular domain.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Domain {
     /// Corner with the smallest coordinates.
@@ -334,38 +340,38 @@ pub struct Domain {
     pub max: Vec<Length>,
 }
 
-/// A box with its own spacing.
+/// A box with a spacing of its own.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct RefineBox {
     /// Corner with the smallest coordinates.
     pub min: Vec<Length>,
     /// Corner with the largest coordinates.
     pub max: Vec<Length>,
-    /// Largest spacing inside.
+    /// Greatest spacing in the box.
     pub spacing: Length,
 }
 
-/// Refinement behind the bodies.
+/// Refinement of the wake.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Wake {
-    /// Length behind the trailing edge.
+    /// Length of the refined region behind the trailing edge.
     pub length: Length,
-    /// Largest spacing inside.
+    /// Greatest spacing in the region.
     pub spacing: Length,
 }
 
-/// Layers of particles along the walls (2-D).
+/// Layers of particles along the walls.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct WallLayers {
     /// Distance of the first layer from the wall.
     pub first: Length,
     /// Ratio of the distances between successive layers; default 1.2.
     pub growth: f64,
-    /// Greatest number of layers; absent: until they are as far apart as the particles of a layer.
+    /// Greatest number of layers; absent: layers are added until they are isotropic.
     pub count: Option<u32>,
 }
 
-/// Conditions on the sides of the domain.
+/// Boundary conditions on the sides of the domain.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Sides {
     /// Side of smallest x.
@@ -382,27 +388,27 @@ pub struct Sides {
     pub z_max: Side,
 }
 
-/// Condition on one side of the domain.
+/// Boundary condition on a side of the domain.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Side {
-    /// Free stream, with the vortex of the lift in 2-D; waves leave through the upwind flux.
+    /// Free stream, in 2-D with the far-field vortex of the lift; waves leave through the upwind flux.
     #[default]
     FarField,
-    /// The state of `[initial]` held for ever (supersonic inflow, exact solutions).
+    /// State of `[initial]`, prescribed for all times (supersonic inflow, exact solutions).
     Held,
-    /// Zero normal gradient; with a static pressure when the outflow is subsonic.
+    /// Zero normal gradient, with a prescribed static pressure when the outflow is subsonic.
     Outflow {
-        /// Static pressure over free-stream pressure; absent: extrapolated.
+        /// Static pressure divided by that of the free stream; absent: extrapolated.
         pressure: Option<f64>,
     },
     /// Plane of symmetry.
     Symmetry,
-    /// Periodic with the opposite side.
+    /// Periodicity with the opposite side.
     Periodic,
 }
 
-/// Field at the start.
+/// Initial field.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Initial {
@@ -417,24 +423,24 @@ pub enum Initial {
         right: [f64; 3],
         /// Position of the plane.
         position: f64,
-        /// Axis across the plane, 0 for x.
+        /// Axis normal to the plane, 0 for x.
         axis: u8,
     },
-    /// Isentropic vortex (Shu 1998) with the strength, centre and mean velocity given; density and pressure 1 far away.
+    /// Isentropic vortex (Shu 1998) of given strength, centre and mean velocity; density and pressure are 1 far away.
     Vortex {
         /// Strength β.
         strength: f64,
-        /// Centre at the start.
+        /// Initial centre.
         centre: [f64; 2],
         /// Mean velocity.
         velocity: [f64; 2],
     },
-    /// Ringleb's flow, stagnation density and sound speed 1.
+    /// Ringleb's flow with stagnation density and stagnation sound speed 1.
     Ringleb,
 }
 
 impl Initial {
-    /// The same in the units of the solver. Vortex and Ringleb's flow have units of their own, which are those of the solver.
+    /// The field in units of the solver. The vortex and Ringleb's flow are defined in the units of the solver already.
     pub fn in_solver_units(&self, units: &Units) -> Self {
         let state = |s: &[f64; 3]| [s[0] / units.density, units.solver_rate(s[1]), s[2] / units.pressure()];
         match self {
@@ -446,26 +452,28 @@ impl Initial {
     }
 }
 
-/// Spatial scheme.
+/// Spatial discretisation.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Scheme {
-    /// Upwind flux.
+    /// Upwind flux function.
     pub flux: Flux,
-    /// Order of the reconstruction: 1 or 2.
+    /// Order of the reconstruction, 1 or 2.
     pub order: u8,
     /// Slope limiter.
     pub limiter: Limiter,
-    /// Relative size of second differences below which the limiter leaves a field alone; absent: by the number of dimensions.
+    /// Relative size of second differences below which the limiter is inactive; absent: depends on the number of
+    /// dimensions.
     pub limiter_threshold: Option<f64>,
-    /// κ of the reconstruction: 0 for steady flow, 1/3 for waves and vortices.
+    /// Parameter κ of the reconstruction: 0 for steady flow, 1/3 for waves and vortices.
     pub kappa: f64,
-    /// The jump of the normal velocity counts in the upwind flux in proportion to the Mach number.
+    /// Low-Mach-number correction: the jump of the normal velocity in the upwind flux is multiplied by the local Mach
+    /// number.
     pub low_mach: bool,
-    /// Exactly conservative coefficients; absent: the solver's own choice.
+    /// Exactly conservative coefficients; absent: chosen by the solver.
     pub conservative: Option<bool>,
 }
 
-/// Upwind flux at the middle of an edge.
+/// Upwind flux function, evaluated at the midpoint of an edge.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Flux {
@@ -483,61 +491,61 @@ pub enum Flux {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Limiter {
-    /// Unlimited: smooth flow only.
+    /// No limiter, for smooth flow only.
     None,
-    /// Van Albada (1982) with a threshold, differentiable.
+    /// Van Albada (1982) with a threshold; differentiable.
     VanAlbada,
-    /// Venkatakrishnan's (1995) rational function on edges.
+    /// Rational function of Venkatakrishnan (1995), evaluated on edges.
     Venkatakrishnan,
 }
 
-/// Refinement that follows the solution.
+/// Solution-adaptive refinement.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Adapt {
-    /// Number of refinements (0: none).
+    /// Number of refinement cycles; 0: none.
     pub cycles: u32,
-    /// Finest spacing that adaptation may ask for; default: `cloud.spacing`.
+    /// Finest spacing of the adaptation; default: `cloud.spacing`.
     pub spacing: Option<Length>,
     /// Greatest number of particles.
     pub particles: usize,
-    /// Sensors in use.
+    /// Active sensors.
     pub sensors: Vec<Sensor>,
 }
 
-/// Sensor of the adaptation.
+/// Sensor of the adaptive refinement.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Sensor {
-    /// Jumps of pressure across an edge.
+    /// Pressure jump across an edge.
     Shock,
-    /// Jumps of tangential velocity across an edge.
+    /// Jump of the tangential velocity across an edge.
     Shear,
     /// Second differences of density and velocity.
     Curvature,
 }
 
-/// The hinge of a control surface: what of a body lies behind it, between its ends.
+/// Hinge line of a control surface. The control surface is the part of a body behind the line, between its ends.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Hinge {
-    /// Its name.
+    /// Name of the control surface.
     pub name: String,
-    /// Name of the body that the control surface is part of; absent: all bodies.
+    /// Name of the body that it is part of; absent: all bodies.
     pub body: Option<String>,
-    /// One end of the line, in the plane the hinge.
+    /// First end of the hinge line; in 2-D the hinge point.
     pub from: Vec<Length>,
-    /// The other end, in space.
+    /// Second end of the hinge line (3-D).
     pub to: Option<Vec<Length>>,
 }
 
 impl Default for Placement {
-    /// As the shape is.
+    /// No scaling, rotation or translation.
     fn default() -> Self {
         Self { scale: 1.0, rotate: Vec::new(), translate: Vec::new() }
     }
 }
 
 impl Body {
-    /// A body of this shape, without name, at rest where the shape puts it.
+    /// A body of this shape without name and motion, placed as the shape defines it.
     pub fn new(shape: Shape) -> Self {
         Self { name: None, shape, placement: Placement::default(), weld: None, wall: None, motion: None, solid: None }
     }
@@ -563,7 +571,7 @@ impl Default for Scheme {
 }
 
 impl Cloud {
-    /// Particles per level of refinement, counted away from the surface.
+    /// Number of particles across each level of refinement.
     pub fn particles_per_level(&self) -> f64 {
         self.layers.unwrap_or(6.0)
     }

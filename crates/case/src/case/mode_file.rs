@@ -1,8 +1,8 @@
-//! Mode shapes in files: points of a body and how far each goes.
+//! Files of mode shapes: points of a body and their displacements.
 //!
-//! A header names the columns, in any order: `x`, `y` and in space `z`, the place of a point of the body as it stands before
-//! any motion; `dx`, `dy` and in space `dz`, its displacement when the coordinate of the mode is one. Capitals are as good, and
-//! further columns are not read. Values are separated by commas; `#` begins a comment. All mistakes are told at once.
+//! A header names the columns, in any order: `x`, `y` and in 3-D `z`, the position of a point of the body before any
+//! motion; `dx`, `dy` and in 3-D `dz`, its displacement for a modal coordinate of one. Upper case is accepted, and
+//! further columns are ignored. Values are separated by commas; `#` starts a comment. All errors are reported at once.
 use std::collections::BTreeMap;
 use std::ops::Range;
 
@@ -10,44 +10,45 @@ use super::error::{CaseError, CaseErrors};
 use super::schema::one_of;
 use super::text::separator;
 
-/// Most points of a mode: what a shape is made from takes half a gigabyte then.
+/// Greatest number of points of a mode; the construction of the shape then takes half a gigabyte.
 const MOST_POINTS: usize = 1_000_000;
-/// Mistakes that are told; whoever has more has made one of them many times.
+/// Greatest number of errors that are reported; more are repetitions of the same error.
 const MOST_MISTAKES: usize = 20;
-/// Columns: places, then displacements.
+/// Names of the columns: positions, then displacements.
 const COLUMNS: [&str; 6] = ["x", "y", "z", "dx", "dy", "dz"];
 
-/// Points and their displacements; what lies outside the plane is zero in 2-D.
+/// Points with their displacements; in 2-D the third component is zero.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct ModeTable {
-    /// Places before any motion.
+    /// Positions before any motion.
     pub points: Vec<[f64; 3]>,
-    /// Displacements when the coordinate of the mode is one.
+    /// Displacements for a modal coordinate of one.
     pub displacements: Vec<[f64; 3]>,
 }
 
-/// The table of a mode file, and where its rows stand.
+/// The table of a mode file, with the line of each row.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct ModeFile {
-    /// The points and their displacements.
+    /// Points and displacements.
     pub table: ModeTable,
-    /// Line of each point.
+    /// Line number of each point.
     pub lines: Vec<usize>,
-    /// What was left out.
+    /// Messages about ignored columns.
     pub notes: Vec<String>,
 }
 
-/// A piece of the text with its place.
+/// A cell of the table with its position in the text.
 type Cell<'t> = (&'t str, Range<usize>);
 
-/// Reads the text of a mode file for a case of two or three dimensions; `name` is what messages call it.
+/// Reads the text of a mode file for a case of two or three dimensions; `name` identifies the file in messages. Fails
+/// with all errors.
 pub fn read_mode(text: &str, name: &str, dimension: usize) -> Result<ModeFile, CaseErrors> {
     let mut reader = Reader { dimension, places: Vec::new(), errors: Vec::new() };
     let mut file = ModeFile::default();
     let mut lines = lines(text);
     if let Some((_, cells, header)) = lines.next() {
         reader.header(&cells, &header, &mut file.notes);
-        // without its columns no row can be understood
+        // without the columns no row can be interpreted
         if reader.errors.is_empty() {
             let mut seen = BTreeMap::new();
             lines.for_each(|(number, cells, whole)| reader.row((number, &cells, &whole), &mut seen, &mut file));
@@ -64,17 +65,17 @@ pub fn read_mode(text: &str, name: &str, dimension: usize) -> Result<ModeFile, C
     Err(CaseErrors::new(name, text, reader.errors))
 }
 
-/// What a header must look like.
+/// Hint with the format of the header.
 fn header_hint(dimension: usize) -> String {
     format!("begin with the line `{}`", expected(dimension).collect::<Vec<_>>().join(","))
 }
 
-/// Columns of a case of `dimension` dimensions.
+/// Names of the columns in a case of `dimension` dimensions.
 fn expected(dimension: usize) -> impl Iterator<Item = &'static str> {
     COLUMNS.into_iter().filter(move |c| dimension == 3 || !c.ends_with('z'))
 }
 
-/// Lines that say something: number, cells, extent.
+/// Lines that are neither empty nor comments: number, cells, extent in bytes.
 fn lines(text: &str) -> impl Iterator<Item = (usize, Vec<Cell<'_>>, Range<usize>)> {
     let mut start = 0;
     let between = separator(text);
@@ -97,7 +98,7 @@ fn lines(text: &str) -> impl Iterator<Item = (usize, Vec<Cell<'_>>, Range<usize>
     })
 }
 
-/// A piece of text that begins at byte `at`, without blanks around it.
+/// A piece of text that starts at byte `at`, without surrounding spaces.
 fn trimmed(text: &str, at: usize) -> Cell<'_> {
     let inner = text.trim();
     let start = at + (text.len() - text.trim_start().len());
@@ -106,7 +107,7 @@ fn trimmed(text: &str, at: usize) -> Cell<'_> {
 
 struct Reader {
     dimension: usize,
-    /// For each cell of a row, where it goes: an index into [`COLUMNS`]; nowhere for columns that are not read.
+    /// For each cell of a row, its index in [`COLUMNS`]; `None` for ignored columns.
     places: Vec<Option<usize>>,
     errors: Vec<CaseError>,
 }
@@ -118,7 +119,7 @@ impl Reader {
         &mut self.errors[at]
     }
 
-    /// Names of the columns: all that are needed, each once; others are left out.
+    /// Reads the names of the columns: each necessary one must appear once; others are ignored.
     fn header(&mut self, cells: &[Cell<'_>], whole: &Range<usize>, notes: &mut Vec<String>) {
         let allowed: Vec<&str> = expected(self.dimension).collect();
         let mut unread = Vec::new();
@@ -145,7 +146,7 @@ impl Reader {
         }
     }
 
-    /// One point with its displacement.
+    /// Reads a point with its displacement.
     fn row(
         &mut self,
         (number, cells, whole): (usize, &[Cell<'_>], &Range<usize>),
@@ -176,7 +177,7 @@ impl Reader {
             return;
         }
         let (point, displacement) = ([values[0], values[1], values[2]], [values[3], values[4], values[5]]);
-        // zeros of either sign are one place
+        // +0 and −0 are the same position
         let key = point.map(|v| (v + 0.0).to_bits());
         if let Some(&first) = seen.get(&key) {
             let before = file.lines.binary_search(&first).ok();
@@ -193,7 +194,7 @@ impl Reader {
         file.table.displacements.push(displacement);
     }
 
-    /// What only the whole table shows; told at its header.
+    /// Checks that concern the whole table; errors refer to its header.
     fn whole(&mut self, header: &Range<usize>, table: &ModeTable) {
         let n = table.points.len();
         if n > MOST_POINTS {

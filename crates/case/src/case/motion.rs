@@ -1,70 +1,73 @@
 //! Motion of bodies and particles, as data.
 //!
-//! A motion is a sum: angles add up to θ(t) about one axis through the pivot, displacements to d(t), and a point X of the
-//! body as placed is at x(t) = R(θ)(X + Σ q φ(X) − pivot) + pivot + d, with the shapes φ and coordinates q of its modes. Sines are amplitude·sin(ωt + phase): α = α_m + α_0 sin ωt of
-//! the AGARD cases, with the mean α_m from `flow.alpha` or `rotate`. Angles are nose up positive, plunge is up positive.
+//! A motion is a sum of parts: the angles add up to θ(t) about one axis through the pivot, the displacements to d(t). A
+//! point X of the body in its initial placement is at x(t) = R(θ)(X + Σ q φ(X) − pivot) + pivot + d, with the shapes φ
+//! and the coordinates q of its modes. Sines are amplitude·sin(ωt + phase): α = α_m + α_0 sin ωt as in the AGARD cases,
+//! with the mean α_m from `flow.alpha` or
+//! `rotate`. Pitch is nose up positive and plunge is up positive.
 use serde::{Deserialize, Serialize};
 
 use super::{Angle, Case, Flow, Frequency, Length, Rate, Shape, Temporal, Time, Velocity};
 
-/// The table `[motion]`: how particles follow, and the motion of every body without one of its own.
+/// The table `[motion]`: motion of the particles, and motion of every body without a motion of its own.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Motion {
-    /// How particles follow the bodies.
+    /// How the particles follow the bodies.
     pub particles: ParticleMotion,
-    /// Motion of every body without one of its own; of the cloud when there is no body.
+    /// Motion of every body without a motion of its own; without bodies, motion of the cloud.
     #[serde(flatten)]
     pub law: BodyMotionSpec,
 }
 
-/// How particles follow.
+/// How the particles follow the bodies.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum ParticleMotion {
-    /// The whole cloud moves as one with the body.
+    /// The whole cloud moves rigidly with the body.
     Rigid,
-    /// The displacement of the surface is spread into the cloud and fades out towards the far field.
+    /// The displacement of the surface is continued into the cloud and decays towards the far field.
     #[default]
     Deforming,
-    /// Particles travel with the fluid.
+    /// The particles move with the fluid (Lagrangian).
     Lagrangian,
 }
 
-/// Motion of one body; all its parts add up, none: at rest.
+/// Motion of one body as the sum of its parts; without parts the body is at rest.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct BodyMotionSpec {
-    /// Frequency of pitch and plunge.
+    /// Frequency of pitch, plunge and modes.
     pub frequency: Option<Frequency>,
-    /// Reduced frequency k = ωL/U∞ instead.
+    /// Reduced frequency k = ωL/U∞, an alternative to `frequency`.
     pub reduced_frequency: Option<f64>,
     /// Length L of the reduced frequency; absent: half the reference chord.
     pub reduced_length: Option<Length>,
-    /// Period 2π/ω instead.
+    /// Period 2π/ω, an alternative to `frequency`.
     pub period: Option<Time>,
-    /// Point about which the body turns, as placed at the start; it travels with the displacement.
+    /// Centre of rotation in the initial placement; it moves with the displacement.
     pub pivot: Option<Vec<Length>>,
-    /// Axis of the turn in 3-D, right-handed; absent: +y, nose up positive for a stream along +x with lift along +z.
+    /// Axis of rotation in 3-D, right-handed; absent: +y, which is nose up positive for a stream along +x with lift
+    /// along +z.
     pub axis: Option<Vec<f64>>,
-    /// Sines in angle, which add up.
+    /// Sinusoidal rotations.
     #[serde(default)]
     pub pitch: Vec<Pitch>,
-    /// Sines in displacement, which add up.
+    /// Sinusoidal displacements.
     #[serde(default)]
     pub plunge: Vec<Plunge>,
-    /// Steady rotation.
+    /// Rotation at a constant rate.
     pub rotation: Option<Rotation>,
-    /// Steady translation.
+    /// Translation at a constant velocity.
     pub translation: Option<Translation>,
     /// Tabulated displacement and angle.
     pub table: Option<MotionTable>,
-    /// Formulas in time.
+    /// Displacement and angle as formulas of time.
     pub formula: Option<MotionFormula>,
     /// Modes of a flexible body.
     #[serde(default, rename = "mode")]
     pub modes: Vec<ModeMotion>,
 }
 
-/// q(t) = amplitude·sin(ωt + phase), and the file of the shape φ.
+/// Prescribed motion of a mode: coordinate q(t) = amplitude·sin(ωt + phase) and the file of the shape φ.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ModeMotion {
     /// CSV file of points and displacements, see [`super::read_mode`].
@@ -75,28 +78,28 @@ pub struct ModeMotion {
     pub phase: Angle,
 }
 
-/// θ(t) = amplitude·sin(ωt + phase), nose up positive.
+/// Sinusoidal rotation θ(t) = amplitude·sin(ωt + phase), nose up positive.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Pitch {
     /// Amplitude.
     pub amplitude: Angle,
     /// Phase at t = 0.
     pub phase: Angle,
-    /// Frequency of its own.
+    /// Frequency of this part, if it differs from that of the motion.
     #[serde(flatten)]
     pub own: OwnFrequency,
 }
 
-/// d(t) = amplitude·sin(ωt + phase)·direction.
+/// Sinusoidal displacement d(t) = amplitude·sin(ωt + phase)·direction.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Plunge {
     /// Amplitude of the displacement.
     pub amplitude: Length,
     /// Phase at t = 0.
     pub phase: Angle,
-    /// Direction of positive displacement, made a unit vector; absent: up, +y in 2-D and +z in 3-D.
+    /// Direction of positive displacement, normalised; absent: up, +y in 2-D and +z in 3-D.
     pub direction: Option<Vec<f64>>,
-    /// Frequency of its own.
+    /// Frequency of this part, if it differs from that of the motion.
     #[serde(flatten)]
     pub own: OwnFrequency,
 }
@@ -106,16 +109,16 @@ pub struct Plunge {
 pub struct OwnFrequency {
     /// Frequency.
     pub frequency: Option<Frequency>,
-    /// Reduced frequency k = ωL/U∞ instead, with the length L of the motion.
+    /// Reduced frequency k = ωL/U∞ with the length L of the motion, an alternative to `frequency`.
     pub reduced_frequency: Option<f64>,
-    /// Period 2π/ω instead.
+    /// Period 2π/ω, an alternative to `frequency`.
     pub period: Option<Time>,
 }
 
 /// θ(t) = rate·t.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Rotation {
-    /// Rate, of the sign of pitch.
+    /// Angular velocity, positive in the same sense as pitch.
     pub rate: Rate,
 }
 
@@ -126,12 +129,12 @@ pub struct Translation {
     pub velocity: Vec<Velocity>,
 }
 
-/// Displacement and angle at times, joined by cubic splines.
+/// Displacement and angle at given times, interpolated by cubic splines.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct MotionTable {
-    /// CSV file instead of the lists, columns `time` and any of `x`, `y`, `z`, `angle_deg`, `angle_rad`.
+    /// CSV file in place of the lists, with the columns `time` and any of `x`, `y`, `z`, `angle_deg`, `angle_rad`.
     pub file: Option<String>,
-    /// Times, rising.
+    /// Times in ascending order.
     pub time: Option<Vec<Time>>,
     /// Displacements along x.
     pub x: Option<Vec<Length>>,
@@ -141,11 +144,12 @@ pub struct MotionTable {
     pub z: Option<Vec<Length>>,
     /// Angles.
     pub angle: Option<Vec<Angle>>,
-    /// The table repeats; else it begins and ends at rest and holds its ends.
+    /// True when the table repeats; otherwise the motion starts and ends with zero velocity and stays at its end
+    /// positions.
     pub periodic: bool,
 }
 
-/// Formulas in the time `t` of the case for displacements and angle (radians).
+/// Displacements and angle (radians) as formulas of the time `t` of the case.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct MotionFormula {
     /// Displacement along x.
@@ -159,7 +163,7 @@ pub struct MotionFormula {
 }
 
 impl BodyMotionSpec {
-    /// True when no part moves anything.
+    /// True when no part of the motion moves the body.
     pub fn is_still(&self) -> bool {
         self.pitch.is_empty()
             && self.plunge.is_empty()
@@ -170,7 +174,8 @@ impl BodyMotionSpec {
             && self.modes.is_empty()
     }
 
-    /// Angular frequency ω of this table alone, in the units of the case; `chord` is the reference chord, of which k takes half by default.
+    /// Angular frequency ω of this table alone in units of the case; `chord` is the reference chord, half of which is
+    /// the default length of k.
     fn own_angular_frequency(&self, flow: &Flow, chord: f64) -> Option<f64> {
         let own =
             OwnFrequency { frequency: self.frequency, reduced_frequency: self.reduced_frequency, period: self.period };
@@ -179,7 +184,7 @@ impl BodyMotionSpec {
 }
 
 impl OwnFrequency {
-    /// Angular frequency ω in the units of the case, for a part of `law`.
+    /// Angular frequency ω in units of the case for a part of the motion `law`.
     fn angular(&self, law: &BodyMotionSpec, flow: &Flow, chord: f64) -> Option<f64> {
         if let Some(k) = self.reduced_frequency {
             let length = law.reduced_length.map_or(0.5 * chord, |l| l.0);
@@ -190,29 +195,29 @@ impl OwnFrequency {
 }
 
 impl Case {
-    /// Motion of body number `body`: its own, else that of `[motion]`; `None` when it is at rest.
+    /// Motion of body number `body`: its own, or that of `[motion]`; `None` when the body is at rest.
     pub fn motion_of(&self, body: usize) -> Option<&BodyMotionSpec> {
         let own = self.bodies.get(body).and_then(|b| b.motion.as_ref());
         own.or(self.motion.as_ref().map(|m| &m.law)).filter(|law| !law.is_still())
     }
 
-    /// Angular frequency of `law` in the units of the case, radians per second where they are dimensional: its own, else that of `[motion]`.
+    /// Angular frequency of `law` in units of the case (rad/s when dimensional): its own, or that of `[motion]`.
     pub fn angular_frequency(&self, law: &BodyMotionSpec, chord: f64) -> Option<f64> {
         let general = || self.motion.as_ref().and_then(|m| m.law.own_angular_frequency(&self.flow, chord));
         law.own_angular_frequency(&self.flow, chord).or_else(general)
     }
 
-    /// Angular frequency of one part of `law`: its own, else that of the motion.
+    /// Angular frequency of one part of `law`: its own, or that of the motion.
     pub fn part_frequency(&self, part: &OwnFrequency, law: &BodyMotionSpec, chord: f64) -> Option<f64> {
         part.angular(law, &self.flow, chord).or_else(|| self.angular_frequency(law, chord))
     }
 
-    /// True when a body bends.
+    /// True when a body deforms.
     pub fn bends(&self) -> bool {
         (0..self.bodies.len()).any(|i| self.motion_of(i).is_some_and(|law| !law.modes.is_empty()))
     }
 
-    /// How particles follow.
+    /// How the particles follow the bodies.
     pub fn particles(&self) -> ParticleMotion {
         match self.motion.as_ref().map(|m| m.particles).unwrap_or_default() {
             ParticleMotion::Rigid if self.has_gas() && self.solids().next().is_some() => ParticleMotion::Deforming,
@@ -220,7 +225,7 @@ impl Case {
         }
     }
 
-    /// Names of all files that a run reads beside the case file.
+    /// Names of all files other than the case file that a run reads.
     pub fn files(&self) -> impl Iterator<Item = &str> {
         let shapes = self.bodies.iter().flat_map(|body| match &body.shape {
             Shape::Airfoil(file) | Shape::Surface(file) => [Some(file.as_str()), None],

@@ -1,134 +1,137 @@
 //! Designations of NACA sections.
 //!
-//! Four digits: camber in hundredths of the chord, its place in tenths, thickness in hundredths. Five digits: design lift
-//! coefficient in twentieths of three (2 is 0.3), place of greatest camber in twentieths, 0 for a plain or 1 for a reflexed mean
-//! line, thickness. Either may end with a dash and two digits: index of the nose radius (6 as without) and place of greatest
-//! thickness in tenths. 6-series: `6`, place of least pressure in tenths, `A` for the form that is straight from 0.8 chord on, if
-//! wanted the range of lift of the low drag in tenths (it says nothing about the form), a dash, design lift coefficient in tenths,
-//! thickness; `a=0.5` behind says how far the load of the mean line is uniform (1 by default). Jacobs, Ward and Pinkerton, NACA report 460 (1933); Jacobs and Pinkerton, report 537 (1935); Stack and von
-//! Doenhoff, report 492 (1934); Abbott, von Doenhoff and Stivers, report 824 (1945); Loftin, report 903 (1948).
+//! Four digits: camber in hundredths of the chord, its position in tenths, thickness in hundredths. Five digits: design
+//! lift coefficient in units of 0.15 (2 is 0.3), position of the greatest camber in twentieths, 0 for a plain or 1 for
+//! a reflexed mean line, thickness. Either may end with a dash and two digits: index of the nose radius (6 is the
+//! standard) and position of the greatest thickness in tenths. 6-series: `6`, position of the minimum pressure in
+//! tenths, optionally `A` for the form with straight rear sides from 0.8 chord, optionally the range of lift with low
+//! drag in tenths (it does not affect the shape), a dash, design lift coefficient in tenths, thickness; `a=0.5` after
+//! this is the extent of the uniform load of the mean line (default 1). Jacobs, Ward and Pinkerton, NACA report 460
+//! (1933); Jacobs and Pinkerton, report 537 (1935); Stack and von Doenhoff, report 492 (1934); Abbott, von Doenhoff and
+//! Stivers, report 824 (1945); Loftin, report 903 (1948).
 use serde::{Deserialize, Serialize};
 
 /// A NACA section.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Naca {
-    /// Its designation, `0012`, `23012`, `0012-64`, `63-415` or `64A010`.
+    /// Designation, for example `0012`, `23012`, `0012-64`, `63-415` or `64A010`.
     pub digits: String,
-    /// How the section ends.
+    /// Shape of the trailing edge.
     pub trailing_edge: TrailingEdge,
 }
 
-/// Trailing edge of a NACA section.
+/// Shape of the trailing edge of a NACA section.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum TrailingEdge {
-    /// Both sides meet at x/c = 1: last thickness coefficient −0.1036, of a modified form no thickness there.
+    /// Sharp: both sides meet at x/c = 1; last thickness coefficient −0.1036, in a modified form zero thickness there.
     Closed,
-    /// As published, with a base: last thickness coefficient −0.1015, 0.252 % chord for 12 %; of a modified form 0.24 %. Sections of the
-    /// 6-series without `A` are published closed.
+    /// As published, with a base: last thickness coefficient −0.1015, which is 0.252 % chord for a thickness of 12 %;
+    /// 0.24 % in a modified form. Sections of the 6-series without `A` are sharp as published.
     Blunt,
-    /// As published, extended to where the sides meet (x/c = 1.00893 for 0012) and scaled back to unit chord.
+    /// As published, extended to the point where the sides meet (x/c = 1.00893 for 0012) and scaled back to unit chord.
     Extended,
 }
 
-/// What a designation says.
+/// Decoded designation of a NACA section.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct NacaDesign {
     /// Mean line.
     pub line: MeanLine,
-    /// Greatest thickness over the chord.
+    /// Greatest thickness divided by the chord.
     pub thickness: f64,
-    /// How the thickness is spread.
+    /// Thickness distribution.
     pub form: ThicknessForm,
 }
 
-/// Thickness along the chord.
+/// Thickness distribution along the chord.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum ThicknessForm {
-    /// That of four digits.
+    /// That of the four-digit series.
     Standard,
-    /// With another nose radius and place of greatest thickness.
+    /// Four-digit series with another nose radius and position of the greatest thickness.
     Modified {
-        /// Index of the nose radius, 6 as without.
+        /// Index of the nose radius; 6 is the standard.
         nose: f64,
-        /// Place of greatest thickness over the chord.
+        /// Position of the greatest thickness divided by the chord.
         place: f64,
     },
-    /// Of the 6-series.
+    /// That of the 6-series.
     Six(SixSeries),
 }
 
 /// A family of the 6-series.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct SixSeries {
-    /// Place of least pressure in tenths of the chord, 3 to 7.
+    /// Position of the minimum pressure in tenths of the chord, 3 to 7.
     pub place: usize,
-    /// The A-series: straight from 0.8 chord on, 3 to 5.
+    /// True for the A-series, with straight sides from 0.8 chord; 3 to 5 only.
     pub straight: bool,
 }
 
-/// The line that a section is bent along.
+/// Mean line of a section.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum MeanLine {
-    /// Two parabolas that meet at the place of greatest camber.
+    /// Two parabolas that meet at the position of the greatest camber.
     Parabolas {
-        /// Greatest camber over the chord.
+        /// Greatest camber divided by the chord.
         camber: f64,
-        /// Its place over the chord.
+        /// Its position divided by the chord.
         place: f64,
     },
-    /// A cubic, straight behind.
+    /// A cubic followed by a straight line.
     Cubic {
         /// Design lift coefficient.
         lift: f64,
-        /// Place of greatest camber in twentieths of the chord, 1 to 5.
+        /// Position of the greatest camber in twentieths of the chord, 1 to 5.
         place: usize,
     },
-    /// Two cubics, turned up at the end so that the moment about the quarter chord vanishes.
+    /// Two cubics, reflexed so that the moment about the quarter chord vanishes.
     Reflexed {
         /// Design lift coefficient.
         lift: f64,
-        /// Place of greatest camber in twentieths of the chord, 2 to 5.
+        /// Position of the greatest camber in twentieths of the chord, 2 to 5.
         place: usize,
     },
-    /// Uniform load to a part of the chord, from there falling to zero.
+    /// Uniform load up to a fraction of the chord, then linearly decreasing to zero.
     Uniform {
         /// Design lift coefficient.
         lift: f64,
-        /// a, the part of the chord.
+        /// Fraction a of the chord.
         to: f64,
     },
-    /// a = 0.8 with a straight end, the line of the A-series.
+    /// The mean line a = 0.8 with a straight end, used by the A-series.
     Straightened {
         /// Design lift coefficient.
         lift: f64,
     },
 }
 
-/// Why a text is no designation of a section that can be made: what is wrong, and what may help.
+/// Reason why a text is not the designation of a section: the problem and a hint.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct NoSection {
-    /// What is wrong.
+    /// Description of the problem.
     pub what: String,
-    /// What may help.
+    /// Hint for the correction.
     pub hint: &'static str,
 }
 
 const FORMS: &str = "for example `0012`, `2412`, `23012`, `23112`, `0012-64`, `63-415` or `64A010`; other sections by their coordinates, `airfoil = \"file\"`";
 const SIX: &str = "for example `63-415`, `65(2)-215`, `66,1-212`, `64A010` or `65-210 a=0.5`; families are 63 to 67 and 63A to 65A; other sections by their coordinates, `airfoil = \"file\"`";
-/// Thickness over the chord up to which the mapping of the 6-series is used; published are 6 to 21 %.
+/// Greatest relative thickness for which the mapping of the 6-series is used; published sections have 6 to 21 %.
 const SIX_THICKEST: f64 = 0.3;
 const MODIFIED: &str =
     "behind the dash stand the index of the nose radius, 0 to 9, and the place of greatest thickness, 2 to 6 tenths";
-/// Thickness over the chord up to which four and five digits are taken: published are 6 to 25 %, fairings of struts have up to 40 %.
+/// Greatest relative thickness of four- and five-digit sections; published sections have 6 to 25 %, strut fairings up
+/// to 40 %.
 const THICKEST: f64 = 0.5;
 const TOO_THICK: &str = "the last two digits are the thickness in %: published sections have 6 to 25, and up to 50 are taken; thicker bodies are an `ellipse` or a `polygon`";
 const FIVE: &str = "plain mean lines are 210 to 250, reflexed ones 221 to 251, times the first digit over 2";
-/// Design lift coefficient that one of the first of five digits stands for.
+/// Design lift coefficient per unit of the first of five digits.
 const LIFT: f64 = 0.15;
 
 impl Naca {
-    /// What the designation says.
+    /// Decodes the designation. Fails when it is not one of a known section.
     pub fn design(&self) -> Result<NacaDesign, NoSection> {
         let text = self.digits.as_str();
         let bad = |what: String, hint: &'static str| NoSection { what, hint };
@@ -159,12 +162,12 @@ impl Naca {
     }
 }
 
-/// The number that digits stand for.
+/// Number given by decimal digits.
 fn value(digits: &str) -> f64 {
     digits.bytes().fold(0.0, |n, b| 10.0 * n + f64::from(b - b'0'))
 }
 
-/// The mean line of the two or three first digits of `text`.
+/// Mean line of the two or three first digits of `text`.
 fn mean_line(text: &str, digits: &str) -> Result<MeanLine, NoSection> {
     let value = |k: usize| digits.as_bytes()[k] - b'0';
     let (first, place) = (f64::from(value(0)), value(1));
@@ -185,20 +188,20 @@ fn mean_line(text: &str, digits: &str) -> Result<MeanLine, NoSection> {
     }
 }
 
-/// True for what begins like `64A010`, `63-415`, `65(2)-215`, `66,1-212`, `652-215` or `652215`.
+/// True for a text of the form `64A010`, `63-415`, `65(2)-215`, `66,1-212`, `652-215` or `652215`.
 fn is_six_series(text: &str) -> bool {
     let b = text.as_bytes();
     let head = b.len() > 2 && b[0] == b'6' && (b'3'..=b'7').contains(&b[1]);
     head && (!b[2].is_ascii_digit() || b.get(3) == Some(&b'-') || text.split(' ').next().is_some_and(|t| t.len() == 6))
 }
 
-/// The section of a designation of the 6-series.
+/// Decodes a designation of the 6-series.
 fn six_series(text: &str) -> Option<NacaDesign> {
     let (text, to) = match text.split_once(char::is_whitespace) {
         Some((head, tail)) => (head, Some(tail.trim().strip_prefix("a=")?.parse::<f64>().ok()?)),
         None => (text, None),
     };
-    // what stands before the last three digits: family, `A`, range of low drag, dash
+    // the part before the last three digits: family, `A`, range of low drag, dash
     let split = text.len().checked_sub(3).filter(|&i| text.is_char_boundary(i))?;
     let (head, digits) = text.split_at(split);
     let dashed = head.ends_with('-');

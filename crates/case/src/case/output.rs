@@ -1,31 +1,32 @@
-//! What a run writes, how often, and beside what.
+//! Output of a run, its intervals, and reference curves.
 use serde::{Deserialize, Serialize};
 
 use super::quantity::{Time, WallTime};
 
-/// What is written, and how often.
+/// Output files and their intervals.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Output {
-    /// Iterations between checkpoints, at most.
+    /// Greatest number of iterations between checkpoints.
     pub checkpoint: u32,
-    /// Wall-clock time between checkpoints, at most.
+    /// Greatest wall-clock time between checkpoints [s].
     pub checkpoint_time: WallTime,
-    /// Time between field files in marching runs; absent: the last field only.
+    /// Time between field files of a time march; absent: only the last field is written.
     pub field_interval: Option<Time>,
-    /// Most fluid particles in a field file; absent: all.
+    /// Greatest number of fluid particles in a field file; absent: all.
     pub field_particles: Option<u32>,
-    /// Periods at the end of a march that loops and harmonics of the loads are the mean of.
+    /// Number of periods at the end of a march over which loops and harmonics of the loads are averaged.
     pub loop_periods: u32,
-    /// Write `report.html` and pictures.
+    /// True when `report.html` and pictures are written.
     pub report: bool,
-    /// Parts of the half span at which Cp is drawn along the chord, in space; absent: those of the references, else a usual list.
+    /// Fractions of the half span at which the chordwise Cp is plotted (3-D); absent: those of the reference curves, or
+    /// a standard list.
     pub stations: Option<Vec<f64>>,
 }
 
 /// A reference curve of Cp against x/c.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Compare {
-    /// CSV file with columns `x_c` and `Cp`, in space `eta`, the part of the half span, relative to the case file.
+    /// Path of a CSV file, relative to the case file, with the columns `x_c` and `Cp` and, in 3-D, `eta` (fraction of the half span).
     pub file: String,
     /// Name in the legend.
     pub label: String,

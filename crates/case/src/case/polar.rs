@@ -15,7 +15,7 @@ const LISTS: [&str; 2] = ["alpha", "mach"];
 /// Greatest number of points of a polar.
 const MOST: usize = 1000;
 
-/// Values of a polar; an empty list leaves the single value of the free stream alone.
+/// Values of a polar; an empty list means the single value of the free stream.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Polar {
     /// Angles of attack, nose up positive.
@@ -27,7 +27,8 @@ pub struct Polar {
 }
 
 impl Case {
-    /// The case at each point of its polar: all angles at the first Mach number, then all at the next; itself alone without one.
+    /// The case at each point of its polar: all angles at the first Mach number, then all at the next; the case itself
+    /// when it has no polar.
     pub fn points(&self) -> Vec<Self> {
         let none = Polar::default();
         let polar = self.polar.as_ref().unwrap_or(&none);
@@ -43,7 +44,7 @@ impl Case {
 }
 
 impl Polar {
-    /// Angles at each Mach number.
+    /// Number of angles at each Mach number.
     pub fn angles(&self) -> usize {
         self.alpha.len().max(1)
     }
@@ -53,7 +54,7 @@ impl Polar {
         self.angles() * self.mach.len().max(1)
     }
 
-    /// False: a polar has one point at least.
+    /// Always false: a polar has at least one point.
     pub fn is_empty(&self) -> bool {
         false
     }
@@ -63,7 +64,7 @@ fn some(values: &[f64]) -> Vec<Option<f64>> {
     values.iter().copied().map(Some).collect()
 }
 
-/// Moves lists out of the free stream of a tree, where their first values stay.
+/// Moves the lists out of the free stream of a tree; their first values remain there.
 pub(super) fn take_out(tree: &mut Value) {
     let Some(flow) = tree.get_mut("flow").and_then(Value::as_object_mut) else { return };
     let mut polar = Map::new();
@@ -77,7 +78,7 @@ pub(super) fn take_out(tree: &mut Value) {
     }
 }
 
-/// Puts the lists of a tree back into its free stream.
+/// Restores the lists of a tree to its free stream.
 pub(super) fn put_back(tree: &mut Map<String, Value>) {
     let Some(Value::Object(polar)) = tree.remove("polar") else { return };
     let Some(flow) = tree.get_mut("flow").and_then(Value::as_object_mut) else { return };
@@ -88,12 +89,12 @@ pub(super) fn put_back(tree: &mut Map<String, Value>) {
     }
 }
 
-/// True for a case whose free stream has a list.
+/// True for a case whose free stream contains a list.
 pub(super) fn is_polar(draft: &Draft<'_>) -> bool {
     LISTS.iter().any(|key| draft.get(&format!("flow.{key}")).is_some_and(Value::is_array))
 }
 
-/// The lists of a polar fit the rest of the case.
+/// Checks that the lists of a polar are consistent with the rest of the case.
 pub(super) fn contradictions(draft: &mut Draft<'_>) {
     let lists: Vec<String> = LISTS.iter().map(|key| format!("flow.{key}")).collect();
     let lists: Vec<&String> = lists.iter().filter(|path| draft.get(path).is_some_and(Value::is_array)).collect();
@@ -123,7 +124,7 @@ pub(super) fn contradictions(draft: &mut Draft<'_>) {
     }
 }
 
-/// No value stands twice in the list at `path`.
+/// Checks that no value appears twice in the list at `path`.
 fn twice(draft: &mut Draft<'_>, path: &str) {
     let values = draft.numbers(path).unwrap_or_default();
     if let Some(k) = (1..values.len()).find(|k| values[..*k].contains(&values[*k])) {
@@ -134,11 +135,12 @@ fn twice(draft: &mut Draft<'_>, path: &str) {
 /// What is said of commas that may be decimal ones.
 const AMBIGUOUS: &str = "`{}` is one value with a decimal comma, or several values: write decimals with a point, and a blank after each comma of a list";
 
-/// The single values that a text stands for: `-4:8:1 deg` (first:last:step), `-2, 0, 4 deg` or one alone; a unit at the end serves all.
+/// The values that a text denotes: `-4:8:1 deg` (first:last:step), `-2, 0, 4 deg` or a single value; a unit at the end
+/// applies to all.
 pub(super) fn values_of(text: &str) -> Result<Vec<String>, String> {
     let parts = |separator: char| with_last_unit(text.split(separator).map(|part| part.trim().to_owned()).collect());
     if text.contains(',') {
-        // `2,5 deg`: two and a half degrees, or two angles
+        // `2,5 deg` may be two and a half degrees or two angles
         let dense = text.split(',').skip(1).any(|rest| !rest.starts_with(' '));
         return if dense { Err(AMBIGUOUS.replace("{}", text)) } else { Ok(parts(',')) };
     }
@@ -151,14 +153,14 @@ pub(super) fn values_of(text: &str) -> Result<Vec<String>, String> {
     stepped([first, last, step]).ok_or_else(|| format!("`{text}` is no series that reaches its end"))?
 }
 
-/// Values without a unit get that of the last one.
+/// Values without a unit receive that of the last one.
 fn with_last_unit(values: Vec<String>) -> Vec<String> {
     let unit = values.last().map_or("", |last| split(last).1).to_owned();
     let all = values.into_iter().map(|v| if split(&v).1.is_empty() { format!("{v} {unit}") } else { v });
     all.map(|v| v.trim().to_owned()).collect()
 }
 
-/// Number and unit of a quantity.
+/// Splits a quantity into number and unit.
 pub(super) fn split(text: &str) -> (&str, &str) {
     let exponent = |at: usize| text[at + 1..].starts_with(|c: char| c.is_ascii_digit() || "+-".contains(c));
     let of_number =
@@ -168,9 +170,10 @@ pub(super) fn split(text: &str) -> (&str, &str) {
     (number.trim(), unit.trim())
 }
 
-/// The values from the first to the last; `None` where steps lead away from the end or are none, an error where units differ.
+/// The values from first to last; `None` when the step is zero or leads away from the last value, an error when the
+/// units differ.
 fn stepped(parts: [&str; 3]) -> Option<Result<Vec<String>, String>> {
-    /// Part of a step by which the last value may be missed for round-off.
+    /// Fraction of a step by which the last value may be missed because of round-off.
     const NEARLY: f64 = 1e-9;
     let [(first, unit), (last, second), (step, third)] = parts.map(split);
     if let Some(k) = [first, last, step].iter().position(|text| text.parse::<f64>().is_err()) {
@@ -185,7 +188,7 @@ fn stepped(parts: [&str; 3]) -> Option<Result<Vec<String>, String>> {
     if !(0.0..1e6).contains(&count) {
         return None;
     }
-    // as many decimals as are written, so that each value is the number that one would write
+    // as many decimals as are written, so that each value reads as a user would write it
     let decimals = |text: &str| text.split_once('.').map_or(0, |(_, behind)| behind.len());
     let exact = ![first, step].iter().any(|t| t.contains(['e', 'E']));
     let digits = if exact { decimals(first).max(decimals(step)) } else { 12 };

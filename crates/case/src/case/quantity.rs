@@ -1,89 +1,89 @@
 //! Quantities with units.
 //!
-//! A case file writes `"1.25 deg"` or `"35 kPa"`; everything behind it sees a plain number in base units, because one
-//! conversion at the border is easier to check than factors inside formulas. A value x with unit (a, b) is a·x + b in the
-//! base unit; b differs from zero for temperature scales only. Factors are exact by definition: international yard and
-//! pound agreement (1959) for foot and pound, CGPM (1901) for standard gravity 9.806 65 m/s².
+//! A case file contains values such as `"1.25 deg"` or `"35 kPa"`; the program uses plain numbers in base units,
+//! because one conversion at the input is easier to verify than factors inside formulas. A value x with the unit (a, b)
+//! is a·x + b in the base unit; b differs from zero for temperature scales only. The factors are exact by definition:
+//! international yard and pound agreement (1959) for foot and pound, CGPM (1901) for standard gravity 9.806 65 m/s².
 //!
-//! A plain number means the base unit, except for angles and frequencies: degrees taken for radians, or hertz for radians
-//! a second, give a wrong but plausible flow, so they need their unit unless they are zero.
+//! A plain number is in the base unit, except for angles and frequencies: degrees mistaken for radians, or hertz for
+//! radians per second, yield a wrong but plausible flow. These quantities therefore need a unit unless they are zero.
 use std::f64::consts::TAU;
 use std::fmt;
 use std::str::FromStr;
 
 use serde::{Deserialize, Serialize};
 
-/// A unit: its symbol, and what makes `factor * value + offset` a number in the base unit.
+/// A unit: its symbol and the conversion `factor * value + offset` to the base unit.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Unit {
-    /// How the unit is written.
+    /// Symbol of the unit.
     pub symbol: &'static str,
-    /// Size in base units.
+    /// Size of the unit in base units.
     pub factor: f64,
-    /// Position of the zero of the scale in base units.
+    /// Zero of the scale in base units.
     pub offset: f64,
 }
 
-/// A physical dimension: the units it may be written in, the base unit first.
+/// A physical dimension with its permitted units; the base unit comes first.
 #[derive(Debug, PartialEq)]
 pub struct Dimension {
-    /// Name in messages.
+    /// Name of the quantity in messages.
     pub name: &'static str,
-    /// Allowed units, the base unit first.
+    /// Permitted units, the base unit first.
     pub units: &'static [Unit],
-    /// A plain number other than zero is refused.
+    /// True when a plain number other than zero is rejected.
     pub needs_unit: bool,
-    /// A value to show in messages.
+    /// Example of a value for messages.
     pub example: &'static str,
 }
 
-/// Why a text is no quantity.
+/// Reason why a text is not a quantity.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum QuantityError {
-    /// The text does not begin with a number.
+    /// The text does not start with a number.
     #[error("`{text}` does not begin with a number")]
     Number {
-        /// What was written.
+        /// The text.
         text: String,
     },
     /// The number is infinite, NaN or too large.
     #[error("`{text}` is not a finite number")]
     Infinite {
-        /// What was written.
+        /// The text.
         text: String,
     },
     /// The unit is unknown.
     #[error("`{unit}` is no unit of {dimension}; allowed: {allowed}")]
     Unit {
-        /// What stands behind the number.
+        /// The text after the number.
         unit: String,
-        /// What was asked for.
+        /// Name of the expected quantity.
         dimension: &'static str,
-        /// Units that could have been written.
+        /// Permitted units.
         allowed: String,
     },
-    /// An angle without unit.
+    /// The unit is missing where one is necessary.
     #[error("{dimension} `{text}` has no unit")]
     Missing {
-        /// What was written.
+        /// The text.
         text: String,
-        /// What was asked for.
+        /// Name of the expected quantity.
         dimension: &'static str,
     },
 }
 
 impl Dimension {
-    /// Symbols of the allowed units, `deg, rad, …`.
+    /// Symbols of the permitted units, `deg, rad, …`.
     pub fn symbols(&self) -> String {
         self.units.iter().map(|u| u.symbol).collect::<Vec<_>>().join(", ")
     }
 
-    /// The unit of the example.
+    /// Unit of the example.
     pub fn usual(&self) -> &'static str {
         self.example.split_once(' ').map_or("", |(_, unit)| unit)
     }
 
-    /// Value in base units of `text`, for example `1.25 deg`.
+    /// Converts `text`, for example `1.25 deg`, to base units. Fails when it is not a number with a permitted unit.
     pub fn parse(&self, text: &str) -> Result<f64, QuantityError> {
         let trimmed = text.trim();
         let (number, symbol) = trimmed.split_at(number_length(trimmed));
@@ -95,7 +95,7 @@ impl Dimension {
         finite(unit.factor * value + unit.offset, text)
     }
 
-    /// Value in base units of a plain number.
+    /// Converts a plain number to base units. Fails when the quantity needs a unit or the number is not finite.
     pub fn plain(&self, value: f64) -> Result<f64, QuantityError> {
         if self.needs_unit && value != 0.0 {
             let text = value.to_string();
@@ -114,7 +114,7 @@ impl Dimension {
     }
 }
 
-/// A symbol with products as blanks and powers as digits: `kg·m²`, `kg*m^2` and `kg m2` are one unit.
+/// A unit symbol with products written as spaces and powers as digits: `kg·m²`, `kg*m^2` and `kg m2` are the same unit.
 pub(super) fn plain_symbol(symbol: &str) -> String {
     let one = |c: char| match c {
         '·' | '⋅' | '*' => Some(' '),
@@ -130,7 +130,7 @@ fn finite(value: f64, text: &str) -> Result<f64, QuantityError> {
     if value.is_finite() { Ok(value) } else { Err(QuantityError::Infinite { text: text.to_owned() }) }
 }
 
-/// Length of the number at the start of `text`; an `e` belongs to it only when digits follow.
+/// Length of the number at the start of `text` in bytes; an `e` belongs to it only when digits follow.
 fn number_length(text: &str) -> usize {
     let bytes = text.as_bytes();
     let digit = |i: usize| bytes.get(i).is_some_and(u8::is_ascii_digit);
@@ -152,7 +152,7 @@ const fn unit(symbol: &'static str, factor: f64) -> Unit {
     Unit { symbol, factor, offset: 0.0 }
 }
 
-/// The shortest decimal number of degrees that reads back to the same `radians`.
+/// The shortest decimal number of degrees that converts back to exactly the same `radians`.
 pub(super) fn exact_degrees(radians: f64) -> Option<String> {
     let degrees = radians / DEGREE;
     let texts = (0..=15).map(|digits| format!("{degrees:.digits$}"));
@@ -160,13 +160,13 @@ pub(super) fn exact_degrees(radians: f64) -> Option<String> {
 }
 
 impl Angle {
-    /// In degrees, as one would write it.
+    /// The angle in degrees, without digits due to round-off.
     pub fn degrees(&self) -> f64 {
         exact_degrees(self.0).and_then(|text| text.parse().ok()).unwrap_or(self.0 / DEGREE)
     }
 }
 
-/// A number without dimension, where it is written as text.
+/// A dimensionless number that is given as text.
 pub(super) const PURE: &Dimension =
     &Dimension { name: "a number", units: &[unit("-", 1.0)], needs_unit: false, example: "0.3" };
 

@@ -1,7 +1,7 @@
-//! Bodies made of particles, as data: what `[body.solid]` says of material, particles, supports and loads.
+//! Deformable solids of particles, as data: material, particles, supports and loads of `[body.solid]`.
 //!
-//! Numbers are in SI units. In the plane a body has the thickness that is given, whatever its state across the plane; about the y axis
-//! x is the radius.
+//! Values are in SI units. A 2-D body has the given thickness under plane strain and plane stress alike. In an
+//! axisymmetric case, y is the axis and x the radius.
 use serde::{Deserialize, Serialize};
 
 use super::{
@@ -9,39 +9,40 @@ use super::{
     Temperature, Time,
 };
 
-/// `[body.solid]`: a body that deforms.
+/// The table `[body.solid]`: a deformable body.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Solid {
-    /// Material where no region has another one.
+    /// Material outside the regions.
     pub material: SolidMaterial,
-    /// Distance of particles; one of this and `through` is there.
+    /// Distance between particles; either this or `through` is given.
     pub spacing: Option<Length>,
-    /// Particles through the shortest side of the body, both surfaces counted.
+    /// Number of particles across the shortest side of the body, both surfaces included.
     pub through: Option<u32>,
-    /// How particles fill the body; absent: a lattice in boxes, relaxed in other shapes.
+    /// Arrangement of the particles; absent: a lattice in boxes, relaxed in other shapes.
     pub fill: Option<SolidFill>,
-    /// Random displacement of particles as a fraction of the spacing.
+    /// Amplitude of the random displacement of particles as a fraction of the spacing.
     pub jitter: f64,
-    /// What holds across the plane.
+    /// Assumption for the direction normal to the plane.
     pub plane: PlaneState,
-    /// Thickness of plane bodies, of which masses, energies and forces are told.
+    /// Thickness of a 2-D body, for masses, energies and forces.
     pub thickness: Length,
-    /// Strength of the forces against modes that particles do not see, 0 to 1; absent: 0.3 in the plane, 0.4 in space.
+    /// Coefficient of the stabilisation against zero-energy modes, 0 to 1; absent: 0.3 in 2-D, 0.4 in 3-D.
     pub stabilisation: Option<f64>,
-    /// Artificial viscosity of shocks, 0 to 1; absent: 0.1 in explicit marches of plastic materials, contact or gas shocks, 0 otherwise.
+    /// Artificial viscosity for shocks, 0 to 1; absent: 0.1 in explicit marches with plastic materials, contact or gas
+    /// shocks, otherwise 0.
     pub viscosity: Option<f64>,
-    /// Damping in proportion to mass.
+    /// Damping proportional to mass.
     pub damping: PerTime,
-    /// Damping in proportion to stiffness.
+    /// Damping proportional to stiffness.
     pub stiffness_damping: Time,
-    /// Velocity at the start, a formula in x, y, z for each axis; empty: at rest.
+    /// Initial velocity, a formula of x, y, z for each axis; empty: at rest.
     pub velocity: Vec<String>,
-    /// Acceleration of gravity; empty: none.
+    /// Acceleration of gravity; empty: zero.
     pub gravity: Vec<Acceleration>,
-    /// Regions of other materials; the last one that holds a point counts.
+    /// Regions of other materials; where they overlap, the last one applies.
     #[serde(default, rename = "region")]
     pub regions: Vec<SolidRegion>,
-    /// Where the body is held or led.
+    /// Supports.
     #[serde(default, rename = "support")]
     pub supports: Vec<SolidSupport>,
     /// Loads on the surface.
@@ -52,33 +53,33 @@ pub struct Solid {
     pub probes: Vec<SolidProbe>,
 }
 
-/// How particles fill a body.
+/// Arrangement of the particles in a body.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum SolidFill {
-    /// On a lattice along the axes of the shape.
+    /// Lattice along the axes of the shape.
     Lattice,
-    /// Moved until they are as far from one another and from the surface as they can be.
+    /// Relaxed until the particles are evenly spread.
     Relaxed,
 }
 
-/// What holds across the plane of a 2-D body.
+/// Assumption for the direction normal to the plane of a 2-D body.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum PlaneState {
-    /// No strain across the plane.
+    /// Plane strain.
     #[default]
     Strain,
-    /// No stress across the plane.
+    /// Plane stress.
     Stress,
-    /// The y axis is the axis of revolution, x ≥ 0 the radius.
+    /// Axial symmetry about the y axis, with the radius x ≥ 0.
     Axisymmetric,
 }
 
-/// A material: that of the catalogue called `base`, with what is given in place of its numbers.
+/// A material: the one named `base` in the catalogue, with the given values in place of its own.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct SolidMaterial {
-    /// Name in the catalogue of materials, which is not known here.
+    /// Name in the catalogue of materials; this crate does not know the catalogue.
     pub base: Option<String>,
     /// Constitutive law; see [`SolidMaterial::law`].
     pub law: Option<SolidLaw>,
@@ -92,31 +93,32 @@ pub struct SolidMaterial {
     pub shear: Option<Pressure>,
     /// Bulk modulus K.
     pub bulk: Option<Pressure>,
-    /// The constants of a material with three planes of symmetry instead.
+    /// Constants of an orthotropic material, an alternative to the isotropic moduli.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub orthotropic: Option<Orthotropic>,
     /// Yield stress.
     #[serde(rename = "yield")]
     pub yield_stress: Option<Pressure>,
-    /// Modulus of the linear isotropic hardening.
+    /// Modulus of linear isotropic hardening.
     pub hardening: Option<Pressure>,
-    /// Stress by which the exponential hardening grows in all.
+    /// Total increase of the yield stress by exponential hardening.
     pub saturation: Option<Pressure>,
-    /// Its rate δ in saturation·(1 − exp(−δ ε)).
+    /// Rate δ of exponential hardening, saturation·(1 − exp(−δ ε)).
     pub saturation_rate: Option<f64>,
-    /// Modulus of the linear kinematic hardening.
+    /// Modulus of linear kinematic hardening.
     pub kinematic: Option<Pressure>,
-    /// Flow stress of Johnson and Cook (1983).
+    /// Johnson-Cook flow stress (1983).
     pub johnson_cook: Option<JohnsonCook>,
-    /// Overstress of Perzyna (1966).
+    /// Perzyna viscoplasticity (1966).
     pub perzyna: Option<Perzyna>,
-    /// Heat capacity at constant volume.
+    /// Specific heat capacity at constant volume.
     pub heat_capacity: Option<SpecificHeat>,
-    /// Part of the plastic work that becomes heat (Taylor and Quinney 1934); absent: 0.9 where the heat capacity is given, else none.
+    /// Fraction of the plastic work that is converted to heat (Taylor and Quinney 1934); absent: 0.9 where the heat
+    /// capacity is given.
     pub heating: Option<f64>,
-    /// Temperature at the start.
+    /// Initial temperature.
     pub temperature: Option<Temperature>,
-    /// Prony series: fraction of the shear modulus and time of relaxation in seconds; empty: none.
+    /// Prony series: pairs of a fraction of the shear modulus and a relaxation time in seconds; empty: no relaxation.
     pub relaxation: Vec<[f64; 2]>,
 }
 
@@ -124,23 +126,23 @@ pub struct SolidMaterial {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum SolidLaw {
-    /// Small strains.
+    /// Linear elasticity at small strains.
     Linear,
-    /// Linear between Green's strain and the second Piola-Kirchhoff stress.
+    /// Saint-Venant-Kirchhoff: linear relation between the Green-Lagrange strain and the second Piola-Kirchhoff stress.
     SaintVenantKirchhoff,
     /// Compressible neo-Hookean.
     NeoHookean,
-    /// As Saint-Venant and Kirchhoff's, with three planes of symmetry.
+    /// Orthotropic Saint-Venant-Kirchhoff material.
     Orthotropic,
-    /// Rate of the stress in proportion to that of the strain.
+    /// Hypoelastic: stress rate proportional to the strain rate.
     Hypoelastic,
-    /// Elastic and plastic strains.
+    /// Elastoplastic.
     Plastic,
-    /// Stress that relaxes.
+    /// Viscoelastic.
     Viscoelastic,
 }
 
-/// `orthotropic`: elastic constants by the axes of the material.
+/// The table `orthotropic`: elastic constants along the axes of the material.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Orthotropic {
     /// E₁, E₂, E₃.
@@ -149,65 +151,65 @@ pub struct Orthotropic {
     pub poisson: Vec<f64>,
     /// G₁₂, G₁₃, G₂₃.
     pub shear: Vec<Pressure>,
-    /// Direction of the first axis; absent: x.
+    /// Direction of the first material axis; absent: x.
     pub axis_1: Option<Vec<f64>>,
-    /// Direction to which the third axis is as near as it can be; absent: z.
+    /// Direction to which the third material axis is as close as possible; absent: z.
     pub axis_3: Option<Vec<f64>>,
 }
 
-/// σ = (a + b εⁿ)(1 + c ln(ε̇/rate))(1 − T*ᵐ), T* = (T − room)/(melt − room).
+/// Johnson-Cook flow stress σ = (a + b εⁿ)(1 + c ln(ε̇/rate))(1 − T*ᵐ), T* = (T − room)/(melt − room).
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct JohnsonCook {
-    /// a, the yield stress.
+    /// Yield stress a.
     pub a: Pressure,
-    /// b of the hardening.
+    /// Hardening modulus b.
     pub b: Pressure,
-    /// n of the hardening.
+    /// Hardening exponent n.
     pub n: f64,
-    /// c of the rate of strain.
+    /// Strain-rate coefficient c.
     pub c: f64,
-    /// Rate of strain at which a and b were measured.
+    /// Reference strain rate, at which a and b were measured.
     pub rate: PerTime,
-    /// m of the temperature.
+    /// Temperature exponent m.
     pub m: f64,
-    /// Temperature at which the material melts; absent: the stress does not depend on temperature.
+    /// Melting temperature; absent: the stress does not depend on temperature.
     pub melt: Option<Temperature>,
-    /// Temperature at which a and b were measured.
+    /// Reference temperature, at which a and b were measured.
     pub room: Temperature,
 }
 
-/// Plastic rate ε̇ = (overstress/yield stress)^exponent / viscosity.
+/// Perzyna viscoplasticity: plastic strain rate ε̇ = (overstress/yield stress)^exponent / viscosity.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Perzyna {
-    /// A time.
+    /// Viscosity parameter, a time.
     pub viscosity: Time,
     /// Exponent.
     pub exponent: f64,
 }
 
-/// `[[body.solid.region]]`: another material inside a box.
+/// The table `[[body.solid.region]]`: another material in a part of the body.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct SolidRegion {
-    /// Where.
+    /// Extent of the region.
     #[serde(rename = "where")]
     pub place: SolidPlace,
-    /// Its material.
+    /// Material of the region.
     pub material: SolidMaterial,
 }
 
-/// `[[body.solid.support]]`: where the body is held or led.
+/// The table `[[body.solid.support]]`: particles with a prescribed displacement.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct SolidSupport {
-    /// Where, of all particles of the body.
+    /// Extent of the support, among all particles of the body.
     #[serde(rename = "where")]
     pub place: SolidPlace,
-    /// Axes along which particles are held; empty: all.
+    /// Axes along which the displacement is prescribed; empty: all axes.
     pub fix: Vec<SolidAxis>,
-    /// Displacement along each of those axes, in the same order, a formula in t; empty: none.
+    /// Displacement along each of these axes as a formula of t, in the same order; empty: zero.
     pub motion: Vec<String>,
 }
 
-/// An axis.
+/// A coordinate axis.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum SolidAxis {
@@ -219,38 +221,38 @@ pub enum SolidAxis {
     Z,
 }
 
-/// `[[body.solid.load]]`: a load on the surface; one of `pressure`, `traction` and `force` is there.
+/// The table `[[body.solid.load]]`: a load on the surface, given by one of `pressure`, `traction` and `force`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct SolidLoad {
-    /// Where, of the surface of the body as placed.
+    /// Extent of the load on the surface of the body in its initial placement.
     #[serde(rename = "where")]
     pub place: SolidPlace,
-    /// Against the outward normal of the deformed surface.
+    /// Pressure, opposite to the outward normal of the deformed surface.
     pub pressure: Option<Pressure>,
-    /// Force over the area of the undeformed surface, of fixed direction.
+    /// Force per undeformed area, with a fixed direction.
     pub traction: Option<Vec<Pressure>>,
-    /// Force on all of the place, spread by area, of fixed direction.
+    /// Total force, distributed in proportion to area, with a fixed direction.
     pub force: Option<Vec<Force>>,
-    /// Factor in time, a formula in t; absent: 1.
+    /// Load factor as a formula of t; absent: 1.
     pub history: Option<String>,
 }
 
-/// `[[body.solid.probe]]`: a point whose displacement is recorded.
+/// The table `[[body.solid.probe]]`: a point whose displacement is recorded.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct SolidProbe {
-    /// Name of its columns.
+    /// Name of the columns in the output.
     pub name: String,
-    /// Point of the body as placed.
+    /// Point of the body in its initial placement.
     pub at: Vec<Length>,
 }
 
-/// Part of a body as placed.
+/// A part of a body in its initial placement.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(untagged)]
 pub enum SolidPlace {
     /// `"all"`.
     All(Everywhere),
-    /// What lies inside a box.
+    /// The part inside a box.
     Box(SolidBox),
 }
 
@@ -262,7 +264,7 @@ pub enum Everywhere {
     All,
 }
 
-/// A box with some of its sides; absent ones are infinitely far.
+/// A box with some of its sides; absent sides are at infinity.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct SolidBox {
     /// Smallest x.
@@ -279,17 +281,17 @@ pub struct SolidBox {
     pub z_max: Option<Length>,
 }
 
-/// `[contact]`: bodies made of particles touch one another and planes.
+/// The table `[contact]`: contact of deformable solids with one another and with rigid planes.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Contact {
     /// Rigid planes.
     #[serde(default)]
     pub planes: Vec<ContactPlane>,
-    /// Bodies touch one another.
+    /// True when the bodies can touch one another.
     pub bodies: bool,
-    /// Stiffness over the wave modulus times area over spacing.
+    /// Penalty factor: contact stiffness relative to the P-wave modulus times area divided by spacing.
     pub stiffness: f64,
-    /// Coefficient of Coulomb's friction.
+    /// Coefficient of Coulomb friction.
     pub friction: f64,
 }
 
@@ -298,16 +300,16 @@ pub struct Contact {
 pub struct ContactPlane {
     /// A point of the plane.
     pub point: Vec<Length>,
-    /// Its normal, towards the bodies; its length does not matter.
+    /// Normal of the plane, directed towards the bodies; its length is ignored.
     pub normal: Vec<f64>,
 }
 
 impl SolidMaterial {
-    /// Part of the plastic work that becomes heat where nothing else is said (Taylor and Quinney 1934).
+    /// Default fraction of the plastic work that is converted to heat (Taylor and Quinney 1934).
     const USUAL_HEATING: f64 = 0.9;
 
-    /// The law: the one given, else plastic where something yields, viscoelastic where something relaxes, else that of the base, `None`,
-    /// or neo-Hookean without base.
+    /// The constitutive law: the given one; otherwise plastic when a yield stress is given, viscoelastic when a
+    /// relaxation is given, that of the base (`None`), or neo-Hookean without a base.
     pub fn law(&self) -> Option<SolidLaw> {
         if self.law.is_some() {
             return self.law;
@@ -324,14 +326,15 @@ impl SolidMaterial {
         self.base.is_none().then_some(SolidLaw::NeoHookean)
     }
 
-    /// Part of the plastic work that becomes heat, `None` without one and without a heat capacity: as the base says.
+    /// Fraction of the plastic work that is converted to heat; `None` when neither this nor the heat capacity is given,
+    /// so that the base decides.
     pub fn heating(&self) -> Option<f64> {
         self.heating.or(self.heat_capacity.map(|_| Self::USUAL_HEATING))
     }
 }
 
 impl SolidPlace {
-    /// True for points inside, with `slack` beyond each side.
+    /// True for points inside the part, or at most `slack` outside each side.
     pub fn contains(&self, x: &[f64], slack: f64) -> bool {
         let Self::Box(sides) = self else { return true };
         let bounds = sides.bounds();
@@ -350,7 +353,7 @@ impl SolidBox {
 }
 
 impl SolidSupport {
-    /// Axes along which particles are held in a case of this dimension.
+    /// Axes along which the displacement is prescribed in a case of this dimension.
     pub fn axes(&self, dimension: usize) -> Vec<SolidAxis> {
         let all = [SolidAxis::X, SolidAxis::Y, SolidAxis::Z];
         if self.fix.is_empty() { all[..dimension.min(3)].to_vec() } else { self.fix.clone() }
@@ -358,25 +361,25 @@ impl SolidSupport {
 }
 
 impl SolidAxis {
-    /// 0 for x.
+    /// Index of the axis, 0 for x.
     pub fn index(self) -> usize {
         self as usize
     }
 }
 
 impl Case {
-    /// Bodies made of particles that all move, with their numbers: not those of which a few modes do.
+    /// Solids whose particles are all unknowns, with their body numbers; solids reduced to a few modes are excluded.
     pub fn solids(&self) -> impl Iterator<Item = (usize, &Body, &Solid)> {
         let full = |i: usize| self.structure_of(i).is_none_or(|s| s.model != StructureModel::OwnModes);
         self.bodies_of_particles().filter(move |(i, ..)| full(*i))
     }
 
-    /// All bodies made of particles, with their numbers.
+    /// All solids of particles, with their body numbers.
     fn bodies_of_particles(&self) -> impl Iterator<Item = (usize, &Body, &Solid)> {
         self.bodies.iter().enumerate().filter_map(|(i, body)| Some((i, body, body.solid.as_ref()?)))
     }
 
-    /// False for structures alone.
+    /// False for a purely structural case.
     pub fn has_gas(&self) -> bool {
         let stream = self.flow.mach.is_some() || self.flow.velocity.is_some() || self.polar.is_some();
         stream || self.initial != Initial::FreeStream || self.bodies_of_particles().next().is_none()

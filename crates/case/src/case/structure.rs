@@ -1,8 +1,8 @@
-//! Bodies on springs, as data: what the numbers of `[structure]` say, before any of them is given the units of a solver.
+//! Elastically supported and flexible bodies, as data: the numbers of `[structure]` in units of the case.
 //!
-//! Coordinates are displacements `surge`, `sway`, `plunge` of the pivot and angles `roll`, `pitch`, `yaw` about it; in the plane there are
-//! `surge`, `plunge` (up positive), `pitch` (nose up positive) and the angle `flap` (trailing edge down positive). Masses, inertias,
-//! stiffnesses and forces of a 2-D case are per unit span.
+//! The coordinates are the displacements `surge`, `sway`, `plunge` of the pivot and the angles `roll`, `pitch`, `yaw`
+//! about it. In 2-D there are `surge`, `plunge` (up positive), `pitch` (nose up positive) and the angle `flap`
+//! (trailing edge down positive). Masses, inertias, stiffnesses and forces of a 2-D case are per unit span.
 use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
@@ -10,109 +10,109 @@ use serde::{Deserialize, Serialize};
 use super::mode_file::ModeTable;
 use super::{Acceleration, Case, Flow, Frequency, Inertia, Length, Mass, Time};
 
-/// Values by the name of the coordinate, for those that were given.
+/// Values by name of the coordinate, for those that are given.
 pub type PerCoordinate<T> = BTreeMap<String, T>;
 
-/// One `[[structure]]`: a body whose coordinates are unknowns.
+/// One table `[[structure]]`: a body whose coordinates are unknowns.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Structure {
-    /// Name of the body; absent: the only one.
+    /// Name of the body; absent: the only body.
     pub body: Option<String>,
-    /// What moves.
+    /// Structural model.
     pub model: StructureModel,
-    /// Coordinates that are unknowns; empty: those of the model.
+    /// Coordinates that are unknowns; empty: all those of the model.
     pub free: Vec<Freedom>,
-    /// Point whose displacement is counted and about which the body turns, as placed.
+    /// Reference point of the displacement and centre of rotation (elastic axis), in the initial placement.
     pub pivot: Option<Vec<Length>>,
-    /// The same in semichords aft of the middle of the chord, a.
+    /// Position a of the elastic axis in semichords aft of the middle of the chord, an alternative to `pivot`.
     pub elastic_axis: Option<f64>,
-    /// b; absent: half the reference chord.
+    /// Semichord b; absent: half the reference chord.
     pub semichord: Option<Length>,
     /// Mass m.
     pub mass: Option<Mass>,
-    /// μ = m/(πρ∞b²) instead.
+    /// Mass ratio μ = m/(πρ∞b²), an alternative to `mass`.
     pub mass_ratio: Option<f64>,
-    /// Centre of mass, as placed.
+    /// Centre of mass in the initial placement.
     pub centre_of_mass: Option<Vec<Length>>,
-    /// The same in semichords aft of the pivot, x_α.
+    /// Position x_α of the centre of mass in semichords aft of the pivot, an alternative to `centre_of_mass`.
     pub x_alpha: Option<f64>,
-    /// Moments of inertia about the pivot: one in the plane; xx, yy, zz and perhaps xy, yz, zx in space.
+    /// Moments of inertia about the pivot: one in 2-D; xx, yy, zz and optionally xy, yz, zx in 3-D.
     pub inertia: Option<Vec<Inertia>>,
-    /// r_α² = I/(m b²) instead.
+    /// r_α² = I/(m b²), an alternative to `inertia`.
     pub r_alpha2: Option<f64>,
-    /// A typical section whose inertia is that of a rigid body at any angle.
+    /// True for a typical section with the exact inertia of a rigid body at large angles.
     pub large_angles: bool,
-    /// Stiffnesses of the springs in base units.
+    /// Spring stiffnesses in base units.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub stiffness: PerCoordinate<f64>,
-    /// Uncoupled frequencies instead.
+    /// Uncoupled frequencies, an alternative to `stiffness`.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub frequency: PerCoordinate<Frequency>,
-    /// ω_h/ω_α.
+    /// Frequency ratio ω_h/ω_α.
     pub frequency_ratio: Option<f64>,
-    /// V* = U∞/(b ω_α), of plunge when there is no pitch.
+    /// Reduced speed V* = U∞/(b ω_α), with the frequency of plunge when there is no pitch.
     pub reduced_speed: Option<f64>,
-    /// U* = U∞/(f D) with D = 2b instead.
+    /// U* = U∞/(f D) with D = 2b, an alternative to `reduced_speed`.
     pub reduced_velocity: Option<f64>,
-    /// V_f = V*/√μ instead.
+    /// Speed index V_f = V*/√μ, an alternative to `reduced_speed`.
     pub speed_index: Option<f64>,
     /// Damping ratios of the uncoupled coordinates.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub damping_ratio: PerCoordinate<f64>,
-    /// Coefficients of dampers instead, in base units.
+    /// Viscous damping coefficients in base units, an alternative to `damping_ratio`.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub damping: PerCoordinate<f64>,
     /// Trailing-edge flap.
     pub flap: Option<StructureFlap>,
-    /// What makes springs nonlinear.
+    /// Nonlinear springs.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub springs: PerCoordinate<SpringShape>,
-    /// Values at the start, and rates by `<coordinate>_rate`, in base units.
+    /// Initial values of the coordinates, and of their rates as `<coordinate>_rate`, in base units.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub initial: PerCoordinate<f64>,
     /// External forces.
     pub force: Option<StructureForce>,
     /// Acceleration of gravity.
     pub gravity: Option<Vec<Acceleration>>,
-    /// How many natural modes of the body's own particles move.
+    /// Number of natural modes computed from the particles of the body.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub number: Option<u32>,
-    /// Modes.
+    /// Modes of a flexible body.
     #[serde(default, rename = "mode", skip_serializing_if = "are_found")]
     pub modes: Vec<StructureMode>,
 }
 
-/// What moves.
+/// Structural model.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum StructureModel {
-    /// Plunge and pitch of a section, perhaps with a flap.
+    /// Typical section: plunge and pitch, optionally with a flap.
     TypicalSection,
     /// A rigid body.
     RigidBody,
     /// Modes of a flexible body.
     Modal,
-    /// Natural modes of the body's own particles.
+    /// Natural modes computed from the particles of the body.
     OwnModes,
-    /// Plunge, pitch and modes together, for forces of small motions in them: a program may ask for it, a case file does not.
+    /// Plunge, pitch and modes together, for generalised forces; used internally and not available in case files.
     Floating,
 }
 
-/// A coordinate.
+/// A coordinate (degree of freedom) of a body.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Freedom {
     /// Displacement along x.
     Surge,
-    /// Displacement along y in space.
+    /// Displacement along y (3-D).
     Sway,
-    /// Displacement up: along y in the plane, along z in space.
+    /// Upward displacement: along y in 2-D, along z in 3-D.
     Plunge,
-    /// Angle about x in space.
+    /// Angle about x (3-D).
     Roll,
-    /// Angle, nose up positive.
+    /// Pitch angle, nose up positive.
     Pitch,
-    /// Angle about z in space.
+    /// Angle about z (3-D).
     Yaw,
     /// Angle of the flap, trailing edge down positive.
     Flap,
@@ -121,43 +121,43 @@ pub enum Freedom {
 /// A trailing-edge flap.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct StructureFlap {
-    /// Hinge in semichords aft of the middle of the chord, c.
+    /// Position c of the hinge in semichords aft of the middle of the chord.
     pub hinge: Option<f64>,
-    /// The same as a point, as placed.
+    /// Position of the hinge as a point in the initial placement, an alternative to `hinge`.
     pub hinge_point: Option<Vec<Length>>,
     /// x_β = S_β/(m b) with the mass m of the whole section.
     pub x_beta: f64,
-    /// r_β² = I_β/(m b²) with the mass of the whole section.
+    /// r_β² = I_β/(m b²) with the mass m of the whole section.
     pub r_beta2: f64,
-    /// ω_β/ω_α.
+    /// Frequency ratio ω_β/ω_α.
     pub frequency_ratio: Option<f64>,
-    /// Length over which the surface goes from still to turning.
+    /// Length over which the rotation of the surface increases from zero to its full value at the hinge.
     pub blend: Length,
 }
 
-/// What makes a spring nonlinear: with the elongation e beyond the play its force is k (e + cubic e³).
+/// Nonlinear spring: with the elongation e beyond the free play, its force is k (e + cubic e³).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct SpringShape {
-    /// Over length or radian squared.
+    /// Cubic coefficient [1/length² or 1/rad²].
     pub cubic: f64,
-    /// Half the gap, a length or radians.
+    /// Half the free play [length or rad].
     pub free_play: f64,
-    /// Where the spring is at ease, a length or radians.
+    /// Coordinate at which the spring is unloaded [length or rad].
     pub rest: f64,
 }
 
-/// External forces as formulas in time.
+/// External forces as formulas of time.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct StructureForce {
-    /// Frequency, `omega` of the formulas.
+    /// Frequency, `omega` in the formulas.
     pub frequency: Option<Frequency>,
-    /// k = ωL/U∞ instead.
+    /// Reduced frequency k = ωL/U∞, an alternative to `frequency`.
     pub reduced_frequency: Option<f64>,
-    /// L; absent: half the reference chord.
+    /// Length L of the reduced frequency; absent: half the reference chord.
     pub reduced_length: Option<Length>,
-    /// 2π/ω instead.
+    /// Period 2π/ω, an alternative to `frequency`.
     pub period: Option<Time>,
-    /// Formulas by coordinate.
+    /// Formulas by name of the coordinate.
     #[serde(flatten)]
     pub formulas: PerCoordinate<String>,
 }
@@ -165,48 +165,48 @@ pub struct StructureForce {
 /// A mode of a flexible body.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct StructureMode {
-    /// Name.
+    /// Name of the mode.
     pub name: String,
-    /// File of its shape, see [`super::read_mode`].
+    /// File of the mode shape, see [`super::read_mode`].
     pub file: String,
     /// Generalised mass.
     pub mass: f64,
     /// Frequency.
     pub frequency: Option<Frequency>,
-    /// k = ωb/U∞ instead.
+    /// Reduced frequency k = ωb/U∞, an alternative to `frequency`.
     pub reduced_frequency: Option<f64>,
-    /// Generalised stiffness instead.
+    /// Generalised stiffness, an alternative to `frequency`.
     pub stiffness: Option<f64>,
     /// Damping ratio.
     pub damping_ratio: f64,
-    /// The spring's force is k (e + cubic e³).
+    /// Cubic coefficient: the force of the spring is k (e + cubic e³).
     pub cubic: f64,
-    /// Half the gap of the spring.
+    /// Half the free play of the spring.
     pub free_play: f64,
-    /// Coordinate at the start.
+    /// Initial value of the coordinate.
     pub initial: f64,
-    /// Its rate at the start.
+    /// Initial rate of the coordinate.
     pub initial_rate: f64,
-    /// External force as a formula.
+    /// External generalised force as a formula of time.
     pub force: Option<String>,
-    /// The shape of a mode that was found and has no file.
+    /// Shape of a computed mode, which has no file.
     #[serde(skip)]
     pub table: Option<ModeTable>,
-    /// What is told of a mode that was found.
+    /// Description of a computed mode for reports.
     #[serde(skip)]
     pub told: String,
 }
 
-/// True for modes that were found: a written case does not hold them.
+/// True for computed modes, which are not written to case files.
 fn are_found(modes: &[StructureMode]) -> bool {
     modes.iter().any(|mode| mode.table.is_some())
 }
 
 impl Freedom {
-    /// All of them.
+    /// All coordinates.
     pub const ALL: [Self; 7] = [Self::Surge, Self::Sway, Self::Plunge, Self::Roll, Self::Pitch, Self::Yaw, Self::Flap];
 
-    /// The word of the case file.
+    /// Name of the coordinate in the case file.
     pub fn name(self) -> &'static str {
         match self {
             Self::Surge => "surge",
@@ -226,7 +226,7 @@ impl Freedom {
 }
 
 impl StructureMode {
-    /// A mode of unit mass and stiffness, at rest.
+    /// A mode of unit mass and unit stiffness, initially at rest.
     pub fn unit(name: &str, file: &str) -> Self {
         Self {
             name: name.to_owned(),
@@ -248,7 +248,7 @@ impl StructureMode {
 }
 
 impl Structure {
-    /// A structure of which only the model is given.
+    /// A structure of this model without any other values.
     pub fn of(model: StructureModel) -> Self {
         Self {
             body: None,
@@ -282,14 +282,15 @@ impl Structure {
         }
     }
 
-    /// The structure without modes that were found.
+    /// The structure without computed modes.
     pub fn as_given(&self) -> Self {
         let mut given = self.clone();
         given.modes.retain(|mode| mode.table.is_none());
         given
     }
 
-    /// Coordinates that are unknowns, in the order of the model; none for modes, which are all.
+    /// Coordinates that are unknowns, in the order of the model; empty for modal models, all of whose modes are
+    /// unknowns.
     pub fn freedoms(&self, dimension: usize) -> Vec<Freedom> {
         if matches!(self.model, StructureModel::Modal | StructureModel::OwnModes) {
             return Vec::new();
@@ -308,7 +309,7 @@ impl Structure {
 }
 
 impl Freedom {
-    /// True when cases of this dimension have the coordinate.
+    /// True when the coordinate exists in cases of this dimension.
     pub fn exists_in(self, dimension: usize) -> bool {
         match self {
             Self::Surge | Self::Plunge | Self::Pitch => true,
@@ -319,7 +320,7 @@ impl Freedom {
 }
 
 impl StructureForce {
-    /// Angular frequency ω in the units of the case; `chord` is the reference chord.
+    /// Angular frequency ω in units of the case; `chord` is the reference chord.
     pub fn angular_frequency(&self, flow: &Flow, chord: f64) -> Option<f64> {
         let length = self.reduced_length.map_or(0.5 * chord, |l| l.0);
         let reduced = self.reduced_frequency.map(|k| k * flow.reference().speed / length);
@@ -328,27 +329,27 @@ impl StructureForce {
 }
 
 impl Case {
-    /// The structure of body number `body`, if it is on springs.
+    /// The structure of body number `body`, if it has one.
     pub fn structure_of(&self, body: usize) -> Option<&Structure> {
         let name = self.bodies.get(body)?.name.as_deref();
         self.structures.iter().find(|s| s.body.as_deref().is_none_or(|wanted| Some(wanted) == name))
     }
 
-    /// Angular frequency of the forces on structures in the units of the case, if they have one.
+    /// Angular frequency of the forces on structures in units of the case; `None` when no force has a frequency.
     pub fn force_frequency(&self, chord: f64) -> Option<f64> {
         self.structures.iter().find_map(|s| s.force.as_ref()?.angular_frequency(&self.flow, chord))
     }
 }
 
 impl SpringShape {
-    /// Those of a mode.
+    /// The spring of a mode.
     pub fn of(mode: &StructureMode) -> Self {
         Self { cubic: mode.cubic, free_play: mode.free_play, rest: 0.0 }
     }
 }
 
 impl StructureFlap {
-    /// Hinge for the middle of the chord and the semichord `b`.
+    /// Hinge point, given the middle of the chord and the semichord `b`.
     pub fn hinge_at(&self, middle: [f64; 2], b: f64) -> [f64; 2] {
         match (&self.hinge_point, self.hinge) {
             (Some(point), _) => [point[0].0, point[1].0],

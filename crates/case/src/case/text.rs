@@ -1,23 +1,23 @@
-//! Files with text and tables of numbers, whatever program saved them.
+//! Text files and tables of numbers, independent of the program that wrote them.
 use std::fs::File;
 use std::io::{Error, ErrorKind, Read};
 use std::path::Path;
 
-/// Why bytes are no text.
+/// Reason why bytes are not text.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum TextError {
-    /// Neither UTF-8 nor UTF-16 with its mark.
+    /// The bytes are neither UTF-8 nor UTF-16 with a byte order mark.
     #[error("it is not UTF-8 text: byte {at} belongs to no character")]
     NotText {
-        /// Bytes before the first wrong one.
+        /// Position of the first invalid byte.
         at: usize,
     },
-    /// UTF-16 that breaks off or has half characters.
+    /// The bytes are truncated or invalid UTF-16.
     #[error("it begins as UTF-16 text, but is damaged")]
     Utf16,
 }
 
-/// Opens a file that a case names. Pipes and devices are refused: they might never end, or never begin.
+/// Opens a file that a case names. Pipes and devices are rejected, because reading them might never end.
 pub fn open_regular(path: &Path) -> std::io::Result<File> {
     let kind = std::fs::metadata(path)?;
     if kind.is_file() {
@@ -27,20 +27,20 @@ pub fn open_regular(path: &Path) -> std::io::Result<File> {
     Err(Error::new(ErrorKind::InvalidInput, what))
 }
 
-/// The bytes of a file, which [`open_regular`] opens.
+/// Reads the bytes of a file that [`open_regular`] accepts.
 pub fn read_regular(path: &Path) -> std::io::Result<Vec<u8>> {
     let mut bytes = Vec::new();
     open_regular(path)?.read_to_end(&mut bytes)?;
     Ok(bytes)
 }
 
-/// The text in `bytes`: UTF-8, or UTF-16 that begins with its byte order mark or with characters that have one byte that is not zero.
-/// A mark is left out, and lines that end in `\r` alone, as old Macintosh programs wrote them, end in `\n`.
+/// Decodes `bytes` as UTF-8, or as UTF-16 with a byte order mark or with first characters of which one byte is zero.
+/// The byte order mark is removed, and line ends `\r` of old Macintosh programs become `\n`.
 pub fn text_of(bytes: &[u8]) -> Result<String, TextError> {
     read(bytes, utf8)
 }
 
-/// The same of a file of numbers: characters of other encodings, in comments and names, do no harm.
+/// Decodes the bytes of a file of numbers; characters of other encodings in comments and names are accepted.
 pub fn numbers_of(bytes: &[u8]) -> Result<String, TextError> {
     read(bytes, |all| Ok(String::from_utf8_lossy(all).into_owned()))
 }
@@ -57,13 +57,13 @@ fn read(bytes: &[u8], other: fn(&[u8]) -> Result<String, TextError>) -> Result<S
     Ok(if text.contains('\n') { text } else { text.replace('\r', "\n") })
 }
 
-/// A number with so many digits at most, in powers of ten where it is very small or large.
+/// A number with at most `digits` digits, in powers of ten where it is very small or large.
 pub fn rounded(value: f64, digits: usize) -> String {
     let value: f64 = format!("{value:.*e}", digits.saturating_sub(1)).parse().unwrap_or(value);
     if (1e-3..1e6).contains(&value.abs()) { format!("{value}") } else { format!("{value:e}") }
 }
 
-/// What stands between the columns of a table: the first of `;`, tab and comma that its header has.
+/// Separator of the columns of a table: the first of `;`, tab and comma that appears in its header.
 pub fn separator(table: &str) -> char {
     let said = |line: &&str| !line.trim().is_empty() && !line.trim_start().starts_with('#');
     let header = table.lines().find(said).unwrap_or_default();

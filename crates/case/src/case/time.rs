@@ -1,96 +1,96 @@
-//! How a case goes on in time, as data.
+//! Time integration of a case, as data.
 use serde::{Deserialize, Serialize};
 
 use super::{Case, Frequency, Time};
 
-/// Steady relaxation or time marching.
+/// Kind of the computation: steady relaxation, time marching, harmonic balance or vibration modes.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Temporal {
-    /// Relax to a steady state.
+    /// Relaxation to a steady state.
     Steady(Steady),
-    /// March in time with an explicit Runge-Kutta method.
+    /// Time marching with an explicit Runge-Kutta method.
     Explicit(Explicit),
-    /// March in time with implicit steps, each relaxed in a pseudo time.
+    /// Implicit time marching with dual time stepping.
     Dual(Dual),
-    /// Find the periodic solution by harmonic balance.
+    /// Periodic solution by harmonic balance.
     Harmonics(Harmonics),
-    /// March structures alone in time with implicit steps.
+    /// Implicit time marching of a purely structural case.
     Newmark(Newmark),
-    /// Find free vibrations of structures alone.
+    /// Natural modes of a purely structural case.
     Modes(Modes),
 }
 
-/// Implicit march of structures alone by the generalised-α method.
+/// Implicit time marching of a purely structural case by the generalised-α method.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Newmark {
-    /// Step in time.
+    /// Time step [s].
     pub step: Time,
-    /// Time at which the run ends.
+    /// End time [s].
     pub until: Time,
-    /// Spectral radius ρ∞ at infinite frequency, 0 to 1.
+    /// Spectral radius ρ∞ at infinite frequency, from 0 to 1.
     pub rho_infinity: f64,
-    /// Residual over the size of the forces at which a step ends.
+    /// Residual relative to the magnitude of the forces at which a step is converged.
     pub tolerance: f64,
-    /// Greatest number of Newton iterations of a step.
+    /// Greatest number of Newton iterations per step.
     pub iterations: u32,
 }
 
-/// Free vibrations of structures alone.
+/// Natural modes of a purely structural case.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Modes {
-    /// How many.
+    /// Number of modes.
     pub number: u32,
-    /// The modes are the nearest above this frequency; absent: the lowest ones.
+    /// Lower bound of the frequencies: the modes above it and nearest to it are computed; absent: the lowest modes.
     pub shift: Option<Frequency>,
-    /// They are about the static equilibrium under the loads, not about the stress-free shape.
+    /// True for modes about the static equilibrium under the loads, false for modes about the stress-free shape.
     pub preload: bool,
 }
 
-/// Harmonic balance.
+/// Settings of the harmonic balance.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Harmonics {
     /// Number of harmonics.
     pub number: HarmonicCount,
-    /// Harmonics with which the equations are evaluated, over those that are kept.
+    /// Number of harmonics with which the equations are evaluated divided by the number of harmonics of the solution.
     pub oversample: f64,
-    /// Part that the last harmonic may have of all.
+    /// Greatest fraction of all harmonics that the last one may have, for the automatic choice of their number.
     pub tail: f64,
-    /// Greatest number of harmonics when it is found on the way.
+    /// Greatest number of harmonics of the automatic choice.
     pub most: u32,
-    /// Orders of magnitude the residual must fall.
+    /// Orders of magnitude by which the residual must fall.
     pub orders: f64,
-    /// Change of the loads below which the run ends as well.
+    /// Alternative criterion: change of the loads below which the iteration ends.
     pub tolerance: f64,
     /// Greatest number of iterations for each number of harmonics.
     pub iterations: u32,
-    /// Periods that are marched before, to begin from the last of them.
+    /// Number of periods that are marched in time before, to provide the initial guess.
     #[serde(default)]
     pub march: u32,
-    /// Periods that are marched afterwards, to tell how far a march ends from the balance.
+    /// Number of periods that are marched in time afterwards, to compare a time march with the harmonic balance.
     #[serde(default)]
     pub check: u32,
-    /// Method.
+    /// Iterative method.
     pub method: SteadyMethod,
-    /// Courant number at the start.
+    /// Initial Courant number.
     pub cfl: f64,
     /// Greatest Courant number.
     pub cfl_max: f64,
-    /// Frequency of structures alone; with gas it is that of the motion.
+    /// Frequency of a purely structural case; with gas it is that of the motion.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub frequency: Option<Frequency>,
-    /// Their period instead.
+    /// Period, an alternative to `frequency`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub period: Option<Time>,
 }
 
-/// A number of harmonics.
+/// Number of harmonics: given or automatic.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(untagged)]
 pub enum HarmonicCount {
-    /// This one.
+    /// A given number.
     Fixed(u32),
-    /// As many as it takes.
+    /// The number is increased until the last harmonic is small enough.
     Auto(Automatic),
 }
 
@@ -102,50 +102,50 @@ pub enum Automatic {
     Auto,
 }
 
-/// Steady relaxation.
+/// Settings of the steady relaxation.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Steady {
-    /// Method.
+    /// Iterative method.
     pub method: SteadyMethod,
-    /// Orders of magnitude the residual must fall.
+    /// Orders of magnitude by which the residual must fall.
     pub orders: f64,
     /// Greatest number of iterations.
     pub iterations: u32,
-    /// Courant number at the start.
+    /// Initial Courant number.
     pub cfl: f64,
     /// Greatest Courant number.
     pub cfl_max: f64,
-    /// Equal steps in which the loads of structures alone grow; absent: one.
+    /// Number of equal load steps of a purely structural case; absent: one.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub load_steps: Option<u32>,
 }
 
-/// Method of the steady relaxation.
+/// Iterative method of the steady relaxation.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum SteadyMethod {
-    /// Newton's method with GMRES, preconditioned by sweeps.
+    /// Newton's method with GMRES, preconditioned by symmetric Gauss-Seidel sweeps.
     NewtonKrylov,
-    /// Lower-upper symmetric Gauss-Seidel sweeps alone.
+    /// Lower-upper symmetric Gauss-Seidel sweeps (LU-SGS).
     LuSgs,
-    /// Explicit Runge-Kutta with local steps: the plain reference.
+    /// Explicit Runge-Kutta method with local time steps, as a plain reference.
     RungeKutta,
 }
 
-/// Explicit time marching; [`read()`](super::read()) sees to it that one of `until` and `periods` is there.
+/// Settings of explicit time marching; [`read()`](super::read()) ensures that one of `until` and `periods` is given.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Explicit {
-    /// Time at which the run ends.
+    /// End time.
     pub until: Option<Time>,
-    /// Number of periods of the motion instead.
+    /// Number of periods of the motion, an alternative to `until`.
     pub periods: Option<f64>,
     /// Courant number.
     pub cfl: f64,
     /// Runge-Kutta method.
     pub method: RungeKutta,
-    /// Greatest number of steps.
+    /// Greatest number of time steps.
     pub steps: u32,
-    /// The run ends when mean and first harmonic of the loads change less from one period to the next.
+    /// Change of the mean and the first harmonic of the loads from one period to the next below which the run ends.
     pub periodic_tolerance: Option<f64>,
 }
 
@@ -159,43 +159,45 @@ pub enum RungeKutta {
     Rk4,
 }
 
-/// Implicit time marching; one of `step` and `steps_per_period`, and one of `until` and `periods`, is there.
+/// Settings of implicit time marching. One of `step` and `steps_per_period` is given, and one of `until` and `periods`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Dual {
-    /// Step in time.
+    /// Time step.
     pub step: Option<Time>,
-    /// Number of steps in a period of the motion instead.
+    /// Number of time steps per period of the motion, an alternative to `step`.
     pub steps_per_period: Option<u32>,
-    /// Time at which the run ends.
+    /// End time.
     pub until: Option<Time>,
-    /// Number of periods of the motion instead.
+    /// Number of periods of the motion, an alternative to `until`.
     pub periods: Option<f64>,
     /// Order of the backward difference, 1 or 2.
     pub order: u8,
-    /// Orders of magnitude the residual must fall within a step.
+    /// Orders of magnitude by which the residual must fall within a time step.
     pub orders: f64,
-    /// Greatest number of iterations within a step.
+    /// Greatest number of iterations within a time step.
     pub inner_iterations: u32,
-    /// Orders of magnitude the residual of the steady flow must fall before the march; absent: as many as the march needs.
+    /// Orders of magnitude by which the residual of the steady flow must fall before the march; absent: as many as the
+    /// march needs.
     #[serde(default)]
     pub start_orders: Option<f64>,
-    /// Relative error of a step that the step size is fitted to; absent: fixed steps.
+    /// Relative error of a time step that the step size control aims at; absent: fixed steps.
     pub adaptive: Option<f64>,
-    /// The run ends when mean and first harmonic of the loads change less from one period to the next.
+    /// Change of the mean and the first harmonic of the loads from one period to the next below which the run ends.
     pub periodic_tolerance: Option<f64>,
-    /// Method of the relaxation within a step.
+    /// Iterative method within a time step.
     pub method: SteadyMethod,
-    /// Courant number of the pseudo time at the start of a step.
+    /// Initial Courant number of the pseudo time in each step.
     pub cfl: f64,
     /// Greatest Courant number of the pseudo time.
     pub cfl_max: f64,
-    /// About the period of a free motion of structures, with whose second like period the run ends; no key asks for that.
+    /// Estimated period of a free vibration of structures; the run ends with the second of two equal periods. There is
+    /// no key for it.
     #[serde(skip)]
     pub swing: Option<Time>,
 }
 
 impl Dual {
-    /// A march with steps of one length, all else as it is without being told.
+    /// A march with constant time steps; all other settings have their defaults.
     pub fn fixed(step: Time, until: Time) -> Self {
         Self {
             step: Some(step),
@@ -217,19 +219,19 @@ impl Dual {
 }
 
 impl Case {
-    /// True for cases that change in time.
+    /// True for time-dependent cases.
     pub fn is_unsteady(&self) -> bool {
         !matches!(self.time, Temporal::Steady(_) | Temporal::Modes(_))
     }
 
-    /// Angular frequency of a harmonic balance of structures alone.
+    /// Angular frequency of the harmonic balance of a purely structural case.
     pub fn balance_frequency(&self) -> Option<f64> {
         let Temporal::Harmonics(plan) = &self.time else { return None };
         plan.frequency.map(|f| f.0).or_else(|| Some(std::f64::consts::TAU / plan.period?.0))
     }
 
-    /// Time of the solver at which a march ends; `period` is that of the motion, in the same units. `None` when it counts periods
-    /// of a motion that has none, and where nothing marches.
+    /// End time of a march in units of the solver; `period` is that of the motion in the same units. `None` when the
+    /// end is given in periods but the motion has none, and for cases without a time march.
     pub fn end(&self, period: Option<f64>) -> Option<f64> {
         let (until, periods) = match &self.time {
             Temporal::Steady(_) | Temporal::Harmonics(_) | Temporal::Modes(_) => return None,
@@ -240,7 +242,7 @@ impl Case {
         until.map(|t| self.flow.units().solver_time(t.0)).or_else(|| Some(periods? * period?))
     }
 
-    /// Implicit step in the time of the solver, the first one when steps are adaptive; `period` as for [`Self::end`].
+    /// Implicit time step in units of the solver, the first one when steps are adaptive; `period` as for [`Self::end`].
     pub fn step_length(&self, period: Option<f64>) -> Option<f64> {
         let (step, steps_per_period) = match &self.time {
             Temporal::Dual(plan) => (plan.step, plan.steps_per_period),

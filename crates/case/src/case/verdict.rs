@@ -1,33 +1,33 @@
-//! What became of a claim: `verify` finds it, `report` shows it.
+//! Result of a verification claim: computed by `verify`, shown by `report`.
 use serde::Serialize;
 
-/// A judged claim: one row of the verification table.
+/// An evaluated claim: one row of the verification table.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct ClaimRow {
     /// Name of the case folder.
     pub case: String,
-    /// Metric, with its label and the number of runs in brackets.
+    /// Name of the metric with its label and, in brackets, the number of runs.
     pub metric: String,
-    /// Metric alone.
+    /// Name of the metric alone.
     pub name: &'static str,
-    /// Words that tell apart two claims of the same metric.
+    /// Label that distinguishes two claims of the same metric.
     pub label: Option<String>,
-    /// How value and reference are compared: `relative`, `absolute`, `range`, `at_most` or `at_least`.
+    /// Kind of the comparison: `relative`, `absolute`, `range`, `at_most` or `at_least`.
     pub kind: &'static str,
     /// Measured value.
     pub value: f64,
-    /// Reference: the middle of a range, the bound of one-sided claims.
+    /// Reference value: the centre of a range, or the bound of a one-sided claim.
     pub reference: f64,
-    /// Value less reference, divided by |reference| for relative claims.
+    /// Difference of value and reference, divided by |reference| for relative claims.
     pub error: f64,
-    /// Greatest |error| that passes; half the width of a range, zero for one-sided claims.
+    /// Greatest permitted |error|: half the width of a range; zero for one-sided claims.
     pub tolerance: f64,
-    /// Number of runs that the value is the mean of.
+    /// Number of runs over which the value is averaged.
     pub runs: usize,
-    /// Twice the standard error of that mean; zero of one run.
+    /// Twice the standard error of this mean; zero for one run.
     pub scatter: f64,
-    /// The claim holds.
+    /// True when the claim is fulfilled.
     pub pass: bool,
-    /// Where the reference comes from.
+    /// Source of the reference value.
     pub source: String,
 }

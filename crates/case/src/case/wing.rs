@@ -1,4 +1,4 @@
-//! Wings by their planform and sections, and bodies of revolution, as a case names them.
+//! Wings given by planform and sections, as data.
 use serde::{Deserialize, Serialize};
 
 use super::naca::Naca;
@@ -7,76 +7,75 @@ use super::quantity::{Angle, Length};
 /// A wing, a tail or a fin.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Wing {
-    /// NACA section, at the root where there is another one at the tip.
+    /// NACA section of the root, or of the whole wing.
     pub naca: Option<Naca>,
-    /// Section from a coordinate file, in place of `naca`.
+    /// Coordinate file of the section, an alternative to `naca`.
     pub airfoil: Option<String>,
     /// NACA section at the tip; absent: that of the root.
     pub tip_naca: Option<Naca>,
-    /// Section at the tip from a coordinate file.
+    /// Coordinate file of the section at the tip.
     pub tip_airfoil: Option<String>,
-    /// Distance from tip to tip, of a wing with one side from root to tip.
+    /// Span from tip to tip; for a one-sided wing, from root to tip.
     pub span: Length,
-    /// Chord at the root.
+    /// Root chord.
     pub chord: Option<Length>,
-    /// Square of the span over the area, which gives the chord where that is absent.
+    /// Aspect ratio: square of the span divided by the area, an alternative to `chord`.
     pub aspect_ratio: Option<f64>,
-    /// Chord at the tip over that at the root.
+    /// Taper ratio: tip chord divided by root chord.
     pub taper: f64,
-    /// Angle by which a line at `sweep_at` of the chord is swept back.
+    /// Sweep angle of the line at the fraction `sweep_at` of the chord, positive backward.
     pub sweep: Angle,
-    /// Part of the chord at which that line runs.
+    /// Chord fraction of the line to which `sweep` refers.
     pub sweep_at: f64,
-    /// Angle by which the tips are raised; ±90° for a fin.
+    /// Dihedral angle, tips up positive; ±90° for a fin.
     pub dihedral: Angle,
-    /// Angle by which the nose of the tip is turned up against that of the root, about the quarter chord; in between it grows in
-    /// proportion to the distance from the root.
+    /// Twist: angle of the tip relative to the root about the quarter chord, nose up positive; linear along the span.
     pub twist: Angle,
-    /// How the chord changes along the span.
+    /// Chord distribution along the span.
     pub planform: PlanformShape,
-    /// How tips end.
+    /// Shape of the tips.
     pub tip: Tip,
-    /// Which sides there are.
+    /// Whether both sides exist or one only.
     pub sides: WingSides,
 }
 
-/// How the chord changes along the span.
+/// Chord distribution along the span.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum PlanformShape {
-    /// In proportion to the distance from the root.
+    /// Linear from root to tip.
     Straight,
-    /// As that of an ellipse.
+    /// Elliptic.
     Elliptic,
 }
 
-/// How a tip ends.
+/// Shape of a wing tip.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Tip {
-    /// Half a circle seen from ahead, inside the planform.
+    /// Semicircular in front view, inside the planform.
     Round,
     /// Half a body of revolution of the last section, beyond the planform.
     Revolved,
-    /// The face of the last section.
+    /// Flat, closed by the last section.
     Flat,
 }
 
-/// Which sides a wing has.
+/// Whether both sides of a wing exist or one only.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum WingSides {
-    /// Both, mirrored at y = 0.
+    /// Both sides, symmetric about y = 0.
     Both,
-    /// That of positive y, or the fin.
+    /// The side of positive y, or a fin.
     One,
 }
 
-/// What joins the points of a profile.
+/// Curve through the points of a profile.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum ProfileSides {
-    /// A smooth curve, with corners where it turns by more than 35°.
+    /// A smooth curve, with corners where its direction changes by more than 35°.
     Smooth,
     /// Straight lines.
     Straight,

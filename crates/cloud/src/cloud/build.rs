@@ -1,4 +1,4 @@
-//! From geometry to a finished cloud.
+//! Construction of a cloud from a geometry and a specification.
 use std::sync::Arc;
 
 use super::Transform;
@@ -11,14 +11,17 @@ use super::{Cloud, CloudError, CloudSpec, Outer, WallDistance};
 use crate::geometry::Surface;
 use crate::math::Vector;
 
-/// Part of a spacing by which places looked at lie off the borders of leaves.
+/// Distance, in spacings, by which probing points are kept away from the borders of leaves, where the result would be
+/// ambiguous.
 const ASIDE: f64 = 1e-6;
 
-/// Height of the volume that an interface particle stands for, in spacings.
+/// Height, in spacings, of the volume that an interface particle represents.
 const WALL_HEIGHT: f64 = 0.45;
 
 impl<const D: usize> Cloud<D> {
-    /// Builds a cloud around a surface, or in the domain alone; `extra` are sources of refinement that follow the solution.
+    /// Builds a cloud around a surface, or in the whole domain when there is no surface. `extra` are sources of
+    /// refinement that follow the solution. Fails when the domain does not match the spacing, when the cloud is too
+    /// large, or when particles have neighbour lists that cannot be repaired.
     pub fn build(spec: &CloudSpec<D>, surface: Option<&Surface<D>>, extra: &[Source<D>]) -> Result<Self, CloudError> {
         let layout = Layout::new(spec, surface)?;
         let tree = Arc::new(background(spec, &layout, surface, extra)?);
@@ -34,13 +37,13 @@ impl<const D: usize> Cloud<D> {
         Ok(cloud)
     }
 
-    /// The cloud of particles and what a search among them found.
+    /// Combines the particles with the result of the neighbour search among them.
     pub(super) fn join(particles: Particles<D>, found: Clouds<D>, transforms: Vec<Transform<D>>) -> Self {
         let Clouds { neighbours, wall_stencils, ghosts, repair, n_crevice } = found;
         let mut notes = repair.notes();
         if n_crevice > 0 {
             notes.push(format!(
-                "{n_crevice} interface particles lie in crevices and take the state of the nearest fluid"
+                "{n_crevice} interface particles lie in crevices and take the state of the nearest fluid particles"
             ));
         }
         let outer = outer_particles(&particles);
@@ -86,7 +89,8 @@ impl<const D: usize> Cloud<D> {
     }
 }
 
-/// h^D for fluid particles, area times height for interface particles, spacings along and across the wall in layers.
+/// Volumes of the particles: h^D for fluid particles, area times height for interface particles, and the product of the
+/// spacings along and across the wall for particles in wall layers.
 fn volumes<const D: usize>(particles: &Particles<D>) -> Vec<f64> {
     let mut volume: Vec<f64> = particles.spacing.iter().map(|h| h.powi(D as i32)).collect();
     for (w, i) in particles.interface.iter().zip(particles.n_fluid..) {
@@ -98,22 +102,24 @@ fn volumes<const D: usize>(particles: &Particles<D>) -> Vec<f64> {
     volume
 }
 
-/// Outer particles with the nearest fluid particle inward.
+/// The outer particles, each with the nearest fluid particles inward of it.
 fn outer_particles<const D: usize>(particles: &Particles<D>) -> Vec<Outer> {
     let first = particles.n_rows();
     let outer = particles.outer.iter().zip(first..).map(|((axis, end), i)| {
         let side = particles.sides[*axis][*end];
         let (x, h) = (&particles.x[i], particles.spacing[i]);
         let centre = particles.tree.bounds().centre();
-        // not quite as far, and a little inwards along the side: where leaves of two sizes meet, the place would lie on the border of
-        // two of them, and clouds about an axis would lose their symmetry
+        // The probing point lies slightly nearer than one spacing and slightly inward along the side. Where leaves of
+        // two sizes meet, it would otherwise lie on the border of two leaves, and clouds about an axis would lose their
+        // symmetry.
         let inward = |d: usize| h * (centre[d] - x[d]).signum();
         let toward = |d: usize| (1.0 - ASIDE) * inward(d);
         let fluid_at = |x: &Vector<D>| {
             let leaf = particles.tree.leaf_at(x).node;
             particles.in_leaf(leaf).find(|k| (*k as usize) < particles.n_fluid)
         };
-        // at an edge or a corner of the domain the way straight inward leads along another side: go across it as well
+        // At an edge or a corner of the domain, the direction straight inward runs along another side, so diagonal
+        // directions are tried too.
         let ways = (0..1usize << D).filter(|w| w & (1 << axis) != 0);
         let place = |w: usize| *x + Vector::from_fn(|d| if w & (1 << d) != 0 { toward(d) } else { ASIDE * inward(d) });
         let fewest = |n: u32| ways.clone().filter(move |w| w.count_ones() == n);

@@ -1,24 +1,26 @@
-//! The clouds of all particles: what each sees, answered from both ends, repaired, with the images that are needed.
+//! The neighbour lists of all particles: searched, made symmetric, repaired, and completed with the ghosts that they
+//! need.
 use super::neighbours::{IDENTITY, Neighbours, Rows, Search, Seen};
 use super::repair::Repair;
 use super::{CloudError, Ghost};
 
-/// What a search finds.
+/// Result of the neighbour search.
 pub struct Clouds<const D: usize> {
-    /// Clouds of fluid and interface particles.
+    /// Neighbour lists of the fluid and interface particles.
     pub neighbours: Neighbours,
-    /// Fluid particles from which the state of each interface particle is fitted.
+    /// For each interface particle, the fluid particles from which its state is fitted.
     pub wall_stencils: Neighbours,
-    /// Images that either of them sees.
+    /// Ghosts that appear in one of the two lists.
     pub ghosts: Vec<Ghost>,
-    /// What had to be repaired.
+    /// Repairs of unsuitable neighbour lists.
     pub repair: Repair<D>,
-    /// Number of interface particles with too little fluid in front of them for an ordinary fit.
+    /// Number of interface particles with too few fluid particles in front of them for an ordinary fit.
     pub n_crevice: usize,
 }
 
 impl<const D: usize> Search<'_, D> {
-    /// Clouds of all fluid and interface particles, repaired where needed.
+    /// Neighbour lists of all fluid and interface particles, repaired where necessary. Fails where a list cannot be
+    /// repaired.
     pub fn clouds(&self) -> Result<Clouds<D>, CloudError> {
         let p = self.particles();
         let links = self.links();

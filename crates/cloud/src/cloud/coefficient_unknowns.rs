@@ -1,23 +1,23 @@
-//! Neighbour entries as unknowns of the conservative coefficients.
+//! The unknowns of the conservative coefficients: one for each neighbour entry.
 use super::layers::face_volume;
 use super::operators::Reverse;
 use super::{Cloud, Neighbours};
 use crate::math::Vector;
 use crate::math::parallel::{CHUNK, parts, sweep_parts};
 
-/// How freely shares β of a wall area move.
+/// Relative mobility of the shares β of a wall area.
 const SHARE_FREEDOM: f64 = 0.1;
-/// In place of a transform: the interface particle itself.
+/// Stands in place of a transform for the interface particle itself.
 pub(super) const ITSELF: u8 = u8::MAX;
 
-/// What stands at the other end of a neighbour entry.
+/// Kind of particle at the other end of a neighbour entry.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(super) enum Kind {
-    /// A fluid particle.
+    /// A fluid particle that has the first one as a neighbour too.
     Pair,
     /// The image of a fluid particle under this transform.
     Image(u8),
-    /// A particle on a side of the domain.
+    /// A particle on a side of the domain, or one that does not have the first as a neighbour.
     Open,
     /// An interface particle: its image under this transform, or `ITSELF`.
     Wall(u8),
@@ -26,9 +26,9 @@ pub(super) enum Kind {
 /// A neighbour entry of a fluid particle.
 #[derive(Clone, Copy)]
 pub(super) struct Link<const D: usize> {
-    /// Row at the other end.
+    /// Row of the particle at the other end.
     pub(super) other: u32,
-    /// w of the objective.
+    /// Weight w of the objective.
     pub(super) weight: f64,
     pub(super) offset: Vector<D>,
     pub(super) kind: Kind,
@@ -40,13 +40,13 @@ impl<const D: usize> Link<D> {
     }
 }
 
-/// The neighbour entries of the fluid particles of a cloud. But for their weights, what they are is found anew
-/// whenever it is asked for: a cloud of millions would otherwise hold little else.
+/// The neighbour entries of the fluid particles of a cloud. Except for the weights, their data are recomputed at every
+/// access: stored, they would be the largest part of the memory of a cloud of millions of particles.
 pub(super) struct Links<'a, const D: usize> {
     cloud: &'a Cloud<D>,
-    /// Whether the particle at the other end of an entry sees the first one.
+    /// True when the particle at the other end of an entry has the first one as a neighbour.
     seen_back: Vec<bool>,
-    /// w of every entry.
+    /// Weight w of every entry.
     weight: Vec<f32>,
 }
 
@@ -60,31 +60,31 @@ impl<'a, const D: usize> Links<'a, D> {
         Self { cloud, seen_back, weight }
     }
 
-    /// Entries of row `i`.
+    /// Range of the entries of row `i`.
     #[inline(always)]
     pub(super) fn range(&self, i: usize) -> std::ops::Range<usize> {
         self.cloud.neighbours.range(i)
     }
 
-    /// Links of row `i`, each with its entry.
+    /// Entries of row `i` and their data.
     #[inline(always)]
     pub(super) fn of(&self, i: usize) -> impl Iterator<Item = (usize, Link<D>)> {
         self.range(i).map(move |p| (p, self.at(i, p)))
     }
 
-    /// The link from particle `i` to `j`, which is in its list.
+    /// The entry of particle `i` for particle `j`; `None` when `j` is not in its list.
     pub(super) fn between(&self, i: usize, j: usize) -> Option<(usize, Link<D>)> {
         let p = self.cloud.neighbours.of(i).binary_search(&(j as u32)).ok()? + self.range(i).start;
         Some((p, self.at(i, p)))
     }
 
-    /// Particle, or image of one, at the other end of entry `p`.
+    /// Particle, or image, at the other end of entry `p`.
     #[inline(always)]
     pub(super) fn end(&self, p: usize) -> usize {
         self.cloud.neighbours.index[p] as usize
     }
 
-    /// The link of entry `p` of row `i`.
+    /// Data of entry `p` of row `i`.
     #[inline(always)]
     pub(super) fn at(&self, i: usize, p: usize) -> Link<D> {
         let (cloud, j) = (self.cloud, self.end(p));
@@ -96,7 +96,7 @@ impl<'a, const D: usize> Links<'a, D> {
         self.beyond(p, offset)
     }
 
-    /// Entries of row `i` for fluid particles, and the others after them.
+    /// The entries of row `i` for fluid particles, followed by the other entries.
     #[inline(always)]
     pub(super) fn sorted(&self, i: usize) -> [std::ops::Range<usize>; 2] {
         let range = self.range(i);
@@ -107,8 +107,8 @@ impl<'a, const D: usize> Links<'a, D> {
         [range.start..middle, middle..range.end]
     }
 
-    /// Where the fluid particle of entry `p` of row `i` is, half of the offset to it in single precision, the weight, and whether that
-    /// particle sees the first.
+    /// For entry `p` of row `i`, whose other end is a fluid particle: its index, half the offset to it in single
+    /// precision, the weight, and whether it has particle `i` as a neighbour.
     #[inline(always)]
     pub(super) fn near(&self, i: usize, p: usize) -> (usize, [f32; D], f32, bool) {
         let (here, there) = (&self.cloud.x[i], &self.cloud.x[self.end(p)]);
@@ -119,7 +119,7 @@ impl<'a, const D: usize> Links<'a, D> {
         (self.end(p), middle, self.weight[p], self.seen_back[p])
     }
 
-    /// The link to what is no fluid particle.
+    /// Data of an entry whose other end is not a fluid particle.
     #[inline(never)]
     fn beyond(&self, p: usize, offset: Vector<D>) -> Link<D> {
         let (cloud, j) = (self.cloud, self.end(p));
@@ -134,7 +134,7 @@ impl<'a, const D: usize> Links<'a, D> {
     }
 }
 
-/// `f(i, p)` of every neighbour entry p of the rows i that `first` delimits.
+/// Evaluates `f(i, p)` for every neighbour entry p of the rows i that `first` delimits.
 fn of_entries<T: Copy + Send>(first: &[u32], blank: T, f: impl Fn(usize, usize) -> T + Sync) -> Vec<T> {
     let rows = parts(first.len() - 1, CHUNK);
     let entries: Vec<_> = rows.iter().map(|r| first[r.start] as usize..first[r.end] as usize).collect();
@@ -147,7 +147,7 @@ fn of_entries<T: Copy + Send>(first: &[u32], blank: T, f: impl Fn(usize, usize) 
     all
 }
 
-/// w of the entry of particle `i` for particle `j`, or an image.
+/// Weight w of the entry of particle `i` for particle, or image, `j`.
 fn weight<const D: usize>(cloud: &Cloud<D>, i: usize, j: usize) -> f64 {
     let source = cloud.source(j).index;
     if cloud.interface_range().contains(&source) {

@@ -1,17 +1,17 @@
-//! Growing columns of particles on the wall normals.
+//! Construction of the wall layers: columns of particles along the wall normals.
 //!
-//! All columns advance together, one layer after the other, and a column stops for good where its next particle would
+//! All columns advance together, one layer after the other. A column ends where its next particle would
 //!
-//! - be as far from the last one as from those beside it: the layers have become isotropic;
-//! - lie more than twice as far from those beside it as the interface particles do: a fan around a convex bend;
-//! - lie less than 0.35 times as far from them, measured along the wall: a fold in a concave bend;
+//! - be as far from the previous one as from the adjacent columns, because the layers have become isotropic;
+//! - lie more than twice as far from the adjacent columns as the interface particles do (a fan around a convex bend);
+//! - lie less than 0.35 times as far from them, measured along the wall (a fold in a concave bend);
 //! - come nearer than 0.6 min(Δs, 2Δn) to a column that is not adjacent, or nearer to another wall than to its own;
 //! - leave the domain.
 //!
-//! Where less than two spacings lie between two walls there are no columns at all.
+//! No columns are placed where two walls are less than two spacings apart.
 //!
-//! Then the columns are cut until neighbours differ by one layer at most. Particles of the background inside the layers, or
-//! too near to them, are left out.
+//! Afterwards the columns are shortened until adjacent ones differ by at most one layer. Background particles inside
+//! the layers, or too near to them, are removed.
 use super::Transform;
 use super::grid::Grid;
 use super::interface::Placed;
@@ -25,75 +25,77 @@ use crate::case::{Side, WallLayers};
 use crate::geometry::Surface;
 use crate::math::{Bounds, Vector};
 
-/// Layers stop where they are this many times as far apart as the particles of a layer.
+/// Layers end where their distance exceeds this multiple of the distance between the particles of one layer.
 const ISOTROPIC: f64 = 1.0;
-/// Widest fan: spacing of a layer over that of the interface particles.
+/// Greatest spacing of a layer relative to the spacing of the interface particles (convex bends).
 const WIDEST: f64 = 2.0;
-/// Tightest fold: spacing of a layer along the wall over that of the interface particles.
+/// Smallest spacing of a layer along the wall relative to that of the interface particles (concave bends).
 const TIGHTEST: f64 = 0.35;
-/// Clearance from columns that are not adjacent, in min(Δs, 2Δn).
+/// Minimum distance to columns that are not adjacent, as a multiple of min(Δs, 2Δn).
 const CLEARANCE: f64 = 0.6;
-/// Distance to the nearest wall over the height in a column, below which another wall is nearer.
+/// Ratio of the distance to the nearest wall to the height in the column, below which another wall is nearer than the
+/// column's own.
 const OWN_WALL: f64 = 0.8;
-/// A column that keeps this part of the distance of its foot from a plane of symmetry stands beside its image.
+/// A column that keeps at least this fraction of the distance of its foot from a plane of symmetry has its own image as
+/// a neighbour.
 const LEANING: f64 = 0.9;
-/// A column needs this many spacings between its wall and the next.
+/// Minimum distance, in spacings, between a wall and the next one for a column to start.
 const ROOM: f64 = 2.0;
-/// Height, in spacings, at which the look for the next wall begins.
+/// Height, in spacings, at which the search for the next wall starts.
 const LIFT: f64 = 1e-3;
-/// Most layers.
-const MOST: usize = 1000;
-/// Half-width of the part of the background that a column takes the place of, in its spacings; of one amid others in space: there
-/// columns stand around triangles.
+/// Greatest number of layers.
+const MAX_LAYERS: usize = 1000;
+/// Half-width, in spacings of the column, of the background region that a column replaces.
 const HALF_WIDTH: f64 = 0.55;
-const AMID: f64 = 0.75;
-/// Height above the last layer, in spacings, up to which the background is left out.
+/// The same half-width for a column that is surrounded by others in 3-D, where columns form triangles.
+const HALF_WIDTH_SURROUNDED: f64 = 0.75;
+/// Height above the last layer, in spacings, below which background particles are removed.
 const ABOVE: f64 = 0.5;
-/// Smallest distance of a background particle to one in a layer, in mean spacings.
+/// Minimum distance, in mean spacings, between a background particle and a particle in a layer.
 const APART: f64 = 0.6;
-/// A leaf larger than this many spacings of a layer may be cut in quarters.
+/// A leaf larger than this multiple of the spacing of a layer may be divided into its quarters (octants in 3-D).
 const COARSE: f64 = 1.4;
-/// Distance to its own image, in spacings, up to which an interface particle has that for a neighbour.
+/// Greatest distance, in spacings, at which the image of an interface particle is its neighbour along the wall.
 const ACROSS_PLANE: f64 = 1.5;
-/// Largest cosine between the normal and the way to that image.
+/// Largest cosine between the normal and the direction to that image.
 const ALONG_WALL: f64 = 0.3;
 
-/// Columns over all interface particles, before the fluid particles have numbers.
+/// Columns over all interface particles, before the fluid particles are numbered.
 pub(super) struct Columns<const D: usize> {
-    /// Directions along the wall and normal.
+    /// Unit vectors along the wall, followed by the normal, for each column.
     pub axes: Vec<[Vector<D>; D]>,
-    /// Heights of the layers, the same for all columns.
+    /// Heights of the layers, common to all columns.
     heights: Vec<f64>,
     /// Number of layers of each column.
     counts: Vec<usize>,
-    /// Why each column ends there.
+    /// Reason why each column ends.
     ends: Vec<End>,
     beside: Vec<Vec<Beside>>,
-    /// Whether one is missing on a side.
+    /// True for a column that has no neighbour on one side.
     open: Vec<bool>,
     x: Vec<Vector<D>>,
-    /// Reflections and shifts of the domain.
+    /// Reflections and translations of the domain.
     transforms: Vec<Transform<D>>,
 }
 
-/// What columns grow in.
+/// Geometry in which the columns are built.
 pub(super) struct LayerContext<'a, const D: usize> {
-    /// The bodies.
+    /// Surface of the bodies.
     pub surface: &'a Surface<D>,
-    /// The background.
+    /// Background tree.
     pub tree: &'a Tree<D>,
-    /// The box and its sides.
+    /// The domain and its sides.
     pub layout: &'a Layout<D>,
-    /// Its reflections and shifts.
+    /// Reflections and translations of the domain.
     pub transforms: &'a [Transform<D>],
 }
 
 impl<const D: usize> Columns<D> {
-    /// Grows columns over the interface particles.
+    /// Builds the columns over the interface particles.
     pub(super) fn grow(placed: &Placed<D>, spec: &WallLayers, context: &LayerContext<'_, D>) -> Self {
         let mut columns = Self::start(placed, context.transforms);
         let n = placed.x.len();
-        let most = spec.count.map_or(MOST, |c| c as usize);
+        let most = spec.count.map_or(MAX_LAYERS, |c| c as usize);
         let mut active: Vec<bool> = (0..n).map(|w| columns.may_start(w, context.surface)).collect();
         (0..n).filter(|w| !active[*w]).for_each(|w| columns.ends[w] = End::Meeting);
         let bin = placed.spacing.iter().fold(0.0, |m: f64, h| m.max(*h)).max(f64::MIN_POSITIVE);
@@ -126,7 +128,7 @@ impl<const D: usize> Columns<D> {
         columns
     }
 
-    /// Interface particles with their neighbours along the wall, no layers yet.
+    /// Columns without layers, with their adjacent columns along the wall.
     fn start(placed: &Placed<D>, transforms: &[Transform<D>]) -> Self {
         let n = placed.x.len();
         let (axes, around) = match D {
@@ -146,32 +148,32 @@ impl<const D: usize> Columns<D> {
         }
     }
 
-    /// The point of column `w` at a height.
+    /// Point of column `w` at the distance `height` from the wall.
     fn at(&self, w: usize, height: f64) -> Vector<D> {
         self.x[w] + self.axes[w][D - 1] * height
     }
 
-    /// Offset from column `w` to one beside it, at a height.
+    /// Offset from column `w` to the adjacent column `b` at a height.
     fn step(&self, w: usize, b: &Beside, height: f64) -> Vector<D> {
         let there = self.at(b.column as usize, height);
         let there = b.image.map_or(there, |t| self.transforms[usize::from(t)].point(&there));
         there - self.at(w, height)
     }
 
-    /// Mean distance to the adjacent columns at a height.
+    /// Mean distance from column `w` to the adjacent columns at a height.
     fn spacing(&self, w: usize, height: f64) -> f64 {
         let steps = self.beside[w].iter().map(|b| self.step(w, b, height).norm());
         steps.sum::<f64>() / self.beside[w].len().max(1) as f64
     }
 
-    /// Whether column `w` has one beside it, and room before the next wall.
+    /// True when column `w` has an adjacent column and the next wall is far enough away.
     fn may_start(&self, w: usize, surface: &Surface<D>) -> bool {
         let h = self.spacing(w, 0.0);
         !self.beside[w].is_empty() && !surface.crosses(&self.at(w, LIFT * h), &self.at(w, ROOM * h))
     }
 
-    /// Why column `w` ends before a particle at a height; `None` when that keeps its distance from its own wall, the
-    /// adjacent columns and the sides.
+    /// Reason why column `w` ends below this height; `None` when the next particle keeps its distance from its own
+    /// wall, from the adjacent columns and from the sides of the domain.
     fn end_at(&self, w: usize, (height, thickness): (f64, f64), context: &LayerContext<'_, D>) -> Option<End> {
         let x = self.at(w, height);
         let h = self.spacing(w, height);
@@ -194,8 +196,8 @@ impl<const D: usize> Columns<D> {
         }
     }
 
-    /// Inside the domain, by `margin` from closed sides, where the column leans to them from its foot, and by more than a cell from open
-    /// ones.
+    /// True when `x` lies inside the domain: at least `margin` from closed sides towards which the column leans from
+    /// its foot, and more than one cell from open sides.
     fn is_inside(&self, (foot, x): (&Vector<D>, &Vector<D>), margin: f64, context: &LayerContext<'_, D>) -> bool {
         let bounds = context.tree.bounds();
         let cell = 2.0 * context.tree.leaf_at(x).size;
@@ -208,7 +210,7 @@ impl<const D: usize> Columns<D> {
         })
     }
 
-    /// Whether the particle of column `w` at a height is clear of columns that are not adjacent.
+    /// True when the particle of column `w` at a height keeps its distance from all columns that are not adjacent.
     fn is_free(&self, w: usize, (height, thickness): (f64, f64), grid: &Grid<D>, taken: &[(u32, Vector<D>)]) -> bool {
         let x = self.at(w, height);
         let reach = CLEARANCE * self.spacing(w, height).min(2.0 * thickness);
@@ -221,7 +223,7 @@ impl<const D: usize> Columns<D> {
         free
     }
 
-    /// Cuts columns until adjacent ones differ by one layer at most.
+    /// Shortens the columns until adjacent ones differ by at most one layer.
     fn cut(&mut self) {
         let mut changed = true;
         while changed {
@@ -237,9 +239,10 @@ impl<const D: usize> Columns<D> {
         }
     }
 
-    /// Moves the border between adjacent interface particles under layers from the outline to the middle of their chord: the
-    /// faces of the layers above stand on chords, and a thin layer would not cover the sagitta. Area vectors keep their sum.
-    /// Walls in space keep theirs: the coefficients of the scheme close what is left.
+    /// Moves the border between adjacent interface particles below layers from the outline to the middle of their chord
+    /// (2-D). The faces of the layers above lie on chords, and a thin layer would not cover the sagitta of the arc. The
+    /// sum of the area vectors does not change. In 3-D the area vectors keep their values; the conservative
+    /// coefficients close the remaining gap.
     pub(super) fn straighten(&self, placed: &mut Placed<D>) {
         for w in (0..self.counts.len()).filter(|_| D == 2) {
             let Some(ahead) = self.beside[w].iter().find(|b| b.step[0] > 0.0) else { continue };
@@ -249,7 +252,7 @@ impl<const D: usize> Columns<D> {
             }
             let shift = self.x[w] + self.step(w, ahead, 0.0) * 0.5 - placed.end[w];
             let (along, normal) = (&self.axes[w][0], self.axes[w][D - 1]);
-            // a chord along the outline turned by a right angle, the way that takes `along` to the normal
+            // the chord along the outline, rotated by a right angle in the sense that rotates `along` to the normal
             let turn = along[0] * normal[1] - along[1] * normal[0];
             let mut area = Vector::ZERO;
             (area[0], area[1]) = (-turn * shift[1], turn * shift[0]);
@@ -260,7 +263,7 @@ impl<const D: usize> Columns<D> {
         }
     }
 
-    /// Every particle of the layers: (column, layer counted from 1, position, spacing along the wall, height).
+    /// All particles of the layers: (column, layer counted from 1, position, spacing along the wall, height).
     fn each(&self) -> impl Iterator<Item = (usize, usize, Vector<D>, f64, f64)> + '_ {
         (0..self.counts.len()).flat_map(move |w| {
             (1..=self.counts[w]).map(move |k| {
@@ -270,7 +273,7 @@ impl<const D: usize> Columns<D> {
         })
     }
 
-    /// Seats of the fluid particles in the layers.
+    /// Positions of the fluid particles in the layers.
     pub(super) fn sites(&self, tree: &Tree<D>) -> Vec<ParticleSite<D>> {
         let site = |(w, k, x, spacing, height): (usize, usize, Vector<D>, f64, f64)| ParticleSite {
             cell: tree.cell_at(&x),
@@ -283,8 +286,8 @@ impl<const D: usize> Columns<D> {
         self.each().map(site).collect()
     }
 
-    /// Drops the leaves that the layers take the place of. A leaf that is only too near to a layer finer than itself gives
-    /// way to those of its quarters that are not.
+    /// Removes the leaves that the layers replace. A leaf that is only too near to a layer finer than itself is
+    /// replaced by those of its quarters that keep the minimum distance.
     pub(super) fn blank(&self, context: &LayerContext<'_, D>, blank: f64, fluid: &mut Vec<(Leaf<D>, f64)>) {
         let tree = context.tree;
         let mut finest = vec![f64::INFINITY; tree.n_nodes()];
@@ -320,19 +323,19 @@ impl<const D: usize> Columns<D> {
         }
     }
 
-    /// What every particle of a column takes the place of, the interface particle included.
+    /// The regions of the background that the particles of the columns, interface particles included, replace.
     fn cells(&self) -> impl Iterator<Item = Cell<D>> + '_ {
         let walls =
             (0..self.counts.len()).filter(|w| self.counts[*w] > 0).map(|w| (w, 0, self.x[w], self.spacing(w, 0.0)));
         walls.chain(self.each().map(|(w, k, x, h, _)| (w, k, x, h))).map(|(w, k, x, spacing)| {
             let height = |k: usize| if k == 0 { 0.0 } else { self.heights[k - 1] };
             let above = if k == self.counts[w] { ABOVE * spacing } else { height(k + 1) - height(k) };
-            let width = spacing * if D == 2 || self.open[w] { HALF_WIDTH } else { AMID };
+            let width = spacing * if D == 2 || self.open[w] { HALF_WIDTH } else { HALF_WIDTH_SURROUNDED };
             Cell { x, axes: self.axes[w], spacing, width, above }
         })
     }
 
-    /// The columns, given the numbers of the seats' particles in the order of [`sites`](Self::seats).
+    /// The finished columns; `numbers` are the indices of the fluid particles in the order of [`sites`](Self::sites).
     pub(super) fn finish(&self, mut numbers: impl Iterator<Item = u32>) -> Vec<Column> {
         let column = |w: usize| Column {
             particles: numbers.by_ref().take(self.counts[w]).collect(),
@@ -345,7 +348,7 @@ impl<const D: usize> Columns<D> {
     }
 }
 
-/// What a particle of a column takes the place of: a box from its height up to the next.
+/// The region that a particle of a column replaces: a box from its height up to the next layer.
 struct Cell<const D: usize> {
     x: Vector<D>,
     axes: [Vector<D>; D],
@@ -354,14 +357,14 @@ struct Cell<const D: usize> {
     above: f64,
 }
 
-/// Where a leaf of the background lies.
+/// Position of a leaf relative to a cell of a column.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Place {
-    /// In the box.
+    /// The centre of the leaf lies in the box.
     Inside,
-    /// Too near to the particle.
+    /// The leaf lies outside the box but too near to the particle.
     Near,
-    /// Neither.
+    /// The leaf keeps the minimum distance.
     Clear,
 }
 
@@ -377,7 +380,7 @@ impl<const D: usize> Cell<D> {
     }
 }
 
-/// Axes of the columns over an outline, and what is beside each.
+/// Axes of the columns over an outline (2-D), with the adjacent columns of each.
 fn outline<const D: usize>(placed: &Placed<D>, transforms: &[Transform<D>]) -> Around<D> {
     let n = placed.x.len();
     let mut beside = vec![[None; 2]; n];
@@ -408,7 +411,7 @@ fn outline<const D: usize>(placed: &Placed<D>, transforms: &[Transform<D>]) -> A
     (axes, beside.into_iter().map(listed).collect())
 }
 
-/// An end of an outline at a plane of symmetry goes on with its own image.
+/// At a plane of symmetry, the end of an outline continues with its own image.
 fn look_across_planes<const D: usize>(
     placed: &Placed<D>,
     axes: &[Vector<D>; D],
@@ -434,7 +437,7 @@ fn look_across_planes<const D: usize>(
     }
 }
 
-/// The leaf cut in halves along every axis.
+/// The parts of a leaf that is halved along every axis.
 fn quarters<const D: usize>(leaf: &Leaf<D>) -> Vec<Leaf<D>> {
     let part = |c: u32| {
         let side = Vector::from_fn(|d| if c >> d & 1 == 1 { 0.25 } else { -0.25 });

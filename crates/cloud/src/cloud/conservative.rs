@@ -1,21 +1,22 @@
 //! Exactly conservative coefficients.
 //!
-//! Wanted are one area vector per pair of particles, s_ij = −s_ji, and one volume per fluid particle, as near as possible to
-//! those of the least-squares fit, s⁰_ij = V⁰_i a_ij − V⁰_j a_ji: minimise Σ |s − s⁰|²/w_ij + Σ (V − V⁰)²/b_i subject to
+//! The unknowns are one area vector per pair of particles, s_ij = −s_ji, and one volume per fluid particle. They are to
+//! be as near as possible to those of the least-squares fit, s⁰_ij = V⁰_i a_ij − V⁰_j a_ji: minimise Σ |s − s⁰|²/w_ij +
+//! Σ (V − V⁰)²/b_i subject to
 //!
-//! - Σ_j s_ij + Σ_w s_iw = 0 for every fluid particle (hard): what one particle loses another gains;
-//! - ½ Σ_j s_ij ⊗ d_ij + Σ_w s_iw ⊗ d_iw = V_i I (soft, with parameter ε): exact for linear fields.
+//! - Σ_j s_ij + Σ_w s_iw = 0 for every fluid particle (hard constraint): what one particle loses another one gains;
+//! - ½ Σ_j s_ij ⊗ d_ij + Σ_w s_iw ⊗ d_iw = V_i I (soft constraint with parameter ε): exactness for linear fields.
 //!
-//! A pair seen through a plane of symmetry or a periodic side is the same unknown seen from its other end: s_ki' = −T s_ik'.
-//! The area vector A_w of interface particle w is shared out among the fluid particles in front of it, s_iw = −β_iw A_w with
-//! Σ_i β_iw = 1 (hard): only pressure acts there, so neither mass nor energy passes a wall, and the force on a body is what
-//! the fluid loses.
+//! A pair across a plane of symmetry or a periodic side is the same unknown viewed from its other end: s_ki' = −T
+//! s_ik'. The area vector A_w of interface particle w is shared among the fluid particles in front of it, s_iw = −β_iw
+//! A_w with Σ_i β_iw = 1 (hard constraint). Only pressure acts there, so that neither mass nor energy crosses a wall,
+//! and the force on a body equals the momentum that the fluid loses.
 //!
-//! Eliminating s, β and V leaves a symmetric positive system for the multipliers of the conditions, one small block a
-//! particle (Nocedal and Wright, *Numerical Optimization*, 2nd ed., §16.2-16.3): conjugate gradients, preconditioned by sweeps over
-//! the particles and over groups of them (in `cycle`). A second solve over the closure alone then drives its defect to round-off (in
-//! `closure`).
-//! Antisymmetric coefficients of this kind are those of Chiu, Wang, Hu and Jameson (SIAM J. Sci. Comput. 34, 2012).
+//! Eliminating s, β and V leaves a symmetric positive definite system for the Lagrange multipliers, with one small
+//! block per particle (Nocedal and Wright, *Numerical Optimization*, 2nd ed., §16.2-16.3). It is solved by conjugate
+//! gradients, preconditioned by sweeps over the particles and over groups of them (module `cycle`). A second system for
+//! the closure alone then reduces the closure defect to round-off (module `closure`). Antisymmetric coefficients of
+//! this kind were introduced by Chiu, Wang, Hu and Jameson (SIAM J. Sci. Comput. 34, 2012).
 mod closure;
 mod cycle;
 mod field;
@@ -42,70 +43,71 @@ use crate::math::conjugate::{Row as _, Symmetric, conjugate_gradients};
 use crate::math::parallel::{sweep, sweep_parts, sweep_slots};
 use crate::math::reduce::sum;
 
-/// ε: square of the tolerated relative error of linear consistency against relative changes of s, in the measure of w and b;
-/// in 2-D and 3-D, where the errors of 0.02 would still be seen in the pressure on a sphere.
+/// Softness ε in 2-D and 3-D: the square of the tolerated relative error of linear consistency in units of relative
+/// changes of s, measured by w and b. In 3-D, the errors with 0.02 would still be visible in the pressure on a sphere.
 const SOFTNESS: [f64; 2] = [0.02, 0.005];
-/// Factor on ε around particles whose volume came out too small.
+/// Factor on ε around particles whose volume became too small.
 const SOFTEN: f64 = 10.0;
-/// Rounds of softening.
+/// Greatest number of times that ε is raised.
 const SOFTEN_ROUNDS: usize = 4;
-/// Smallest volume allowed, in h^D.
+/// Smallest permitted volume, in units of h^D.
 const SMALLEST_VOLUME: f64 = 0.2;
-/// b: how freely volumes move, relative to h^2D.
+/// Mobility b of the volumes, in units of h^2D.
 const VOLUME_FREEDOM: f64 = 1.0;
-/// Power of the distance in the first guess of the shares.
+/// Exponent of the inverse distance in the initial guess of the shares.
 const SHARE_POWER: i32 = 4;
-/// Reduction of the residual of the multipliers.
+/// Relative residual to which the multipliers are solved.
 const TOLERANCE: f64 = 1e-2;
-/// The same where only volumes are wanted.
+/// Relative residual where only the volumes are needed.
 const ROUGH: f64 = 5e-2;
 
-/// Most iterations for the multipliers: some thirty are usual. At thin edges and in crevices the conditions nearly contradict one
-/// another, and hundreds more would only trade one particle's linear error for another's.
-const MOST_FOR_MULTIPLIERS: usize = 100;
-/// Most iterations for the closure, which is to be round-off.
-const MOST_ITERATIONS: usize = 4000;
-/// Largest linear error of coefficients that a flow can be computed with, generously: a healthy cloud has less than one. In
-/// crevices narrower than the spacing the conditions may contradict one another, and area vectors of any size come out.
+/// Greatest number of iterations for the multipliers; about thirty are usual. At thin edges and in crevices, the
+/// constraints nearly contradict one another, and hundreds of iterations more would only shift the linear error from
+/// one particle to another.
+const MAX_MULTIPLIER_ITERATIONS: usize = 100;
+/// Greatest number of iterations for the closure, which has to reach round-off.
+const MAX_CLOSURE_ITERATIONS: usize = 4000;
+/// Largest linear error with which a flow can be computed, chosen generously: a sound cloud has less than one. In
+/// crevices narrower than the spacing, the constraints may contradict one another and yield area vectors of any size.
 const WORST_ERROR: f64 = 1e3;
 
-/// What came out of the search for conservative coefficients.
+/// Accuracy and cost of the conservative coefficients.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ConservativeReport {
-    /// Iterations for the multipliers.
+    /// Number of iterations for the multipliers.
     pub iterations: usize,
-    /// Iterations that polished the closure.
+    /// Number of iterations of the closure solver.
     pub polish_iterations: usize,
-    /// Largest |Σ s| of a fluid particle over its Σ |s|.
+    /// Largest relative closure defect |Σ s| / Σ |s| of a fluid particle.
     pub closure_defect: f64,
-    /// Root mean square over fluid particles of |½ Σ s ⊗ d − V I| / V.
+    /// Root mean square over the fluid particles of the relative linear error |½ Σ s ⊗ d − V I| / V.
     pub linear_error_rms: f64,
-    /// Largest value of the same.
+    /// Largest relative linear error.
     pub linear_error_max: f64,
-    /// The particle where that is.
+    /// Index of the particle with the largest linear error.
     pub worst: usize,
-    /// Smallest volume over h^D.
+    /// Smallest volume in units of h^D.
     pub min_volume_ratio: f64,
-    /// ε that was used, before any softening.
+    /// Softness ε that was used before any increase.
     pub softness: f64,
-    /// Particles around which linear consistency was softened to keep volumes positive.
+    /// Number of particles around which ε was raised to keep the volumes positive.
     pub n_softened: usize,
 }
 
 impl ConservativeReport {
-    /// Whether a flow can be computed with the coefficients.
+    /// True when a flow can be computed with the coefficients.
     pub fn is_sound(&self) -> bool {
         self.linear_error_max < WORST_ERROR && self.min_volume_ratio.is_finite()
     }
 }
 
-/// Rewrites `edge.s`, the pieces of wall and the volumes of the fluid particles so that a flux that uses nothing else
-/// conserves mass, momentum and energy. The default flux does not work with the result.
+/// Replaces the area vectors of the edges, the wall faces and the volumes of the fluid particles by exactly
+/// conservative ones, for a flux that uses no other coefficients. The default flux cannot use the result.
 pub fn conservative<const D: usize>(cloud: &mut Cloud<D>, operators: &mut Operators<D>) -> ConservativeReport {
     conservative_with(cloud, operators, SOFTNESS[D - 2])
 }
 
-/// The same with another ε.
+/// Computes conservative coefficients as [`conservative`] does, with a given softness ε.
 pub fn conservative_with<const D: usize>(
     cloud: &mut Cloud<D>,
     operators: &mut Operators<D>,
@@ -121,13 +123,13 @@ pub fn conservative_with<const D: usize>(
     report
 }
 
-/// Finds volumes and pieces of wall, and sets the area vectors of the edges.
+/// Finds volumes and wall faces, and sets the area vectors of the edges.
 fn find<const D: usize>(
     cloud: &Cloud<D>,
     operators: &mut Operators<D>,
     softness: f64,
 ) -> (Vec<f64>, Vec<WallFace<D>>, ConservativeReport) {
-    // first guess: those of the least-squares fit, none to walls
+    // initial guess: the area vectors of the least-squares fit, and none to walls
     operators.alter_areas(|i, j, s| match cloud.interface_range().contains(&cloud.source(j).index) {
         true => Vector::ZERO,
         false => *s * grown_face(cloud, i, j),
@@ -135,7 +137,7 @@ fn find<const D: usize>(
     let mut problem = Problem::new(cloud, softness);
     let levels = Levels::new(&problem, symmetry::mirrors(cloud));
     let mut multipliers = vec![Row::ZERO; problem.n_rows()];
-    // volumes are told well enough by a rough solution
+    // a rough solution determines the volumes accurately enough
     let (mut iterations, mut n_softened, mut tolerance) = (0, 0, ROUGH);
     for round in 0.. {
         iterations += problem.solve(operators, &mut multipliers, &levels, tolerance);
@@ -154,37 +156,38 @@ fn find<const D: usize>(
     (problem.volume, faces, report)
 }
 
-/// An interface particle, or an image of it, as a fluid particle sees it.
+/// A fluid particle that has a share of the area of an interface particle, or of its image.
 #[derive(Clone, Copy)]
 struct Sharer {
-    /// The fluid particle.
+    /// Index of the fluid particle.
     i: u32,
-    /// Its entry.
+    /// Its neighbour entry for the interface particle.
     p: u32,
-    /// Its share β.
+    /// Share β of the area.
     share: f64,
 }
 
-/// The conditions, the volumes of the fluid particles and their shares of the walls; area vectors are those of the edges.
+/// The constrained problem: its weights, the volumes of the fluid particles and the shares of the walls. The area
+/// vectors are stored in the edges.
 struct Problem<'a, const D: usize> {
     n_fluid: usize,
     cloud: &'a Cloud<D>,
     links: Links<'a, D>,
-    /// Area vectors of the interface particles, out of the fluid.
+    /// Area vectors of the interface particles, directed out of the fluid.
     walls: Vec<Vector<D>>,
     /// Signs of the transforms.
     signs: Vec<Vector<D>>,
-    /// Volumes: the first guess of them until the multipliers are known.
+    /// Volumes; until the multipliers are known, their initial guess.
     volume: Vec<f64>,
-    /// Spacing^D, the unit of the volumes.
+    /// Unit of the volumes, spacing^D.
     unit: Vec<f64>,
     softness: Vec<f64>,
     softened: Vec<bool>,
-    /// Who shares each wall.
+    /// For each interface particle, the fluid particles that share its area.
     sharers: Vec<Vec<Sharer>>,
-    /// Weight of all who share each wall.
+    /// For each interface particle, the sum of the weights of these.
     shared: Vec<f64>,
-    /// Weight of all entries of a row whose area vectors may change.
+    /// For each row, the sum of the weights of all entries whose area vectors may change.
     passing: Vec<f64>,
     factors: Factors<D>,
 }
@@ -202,7 +205,7 @@ impl<'a, const D: usize> Problem<'a, D> {
                 }
             }
         }
-        // first guess of the shares of every wall: inverse powers of the distance
+        // initial guess of the shares of every wall: inverse powers of the distance
         for all in &mut sharers {
             let weight = |s: &Sharer| links.at(s.i as usize, s.p as usize).offset.norm().powi(-SHARE_POWER);
             let total: f64 = all.iter().map(weight).sum();
@@ -245,14 +248,14 @@ impl<'a, const D: usize> Problem<'a, D> {
         self.n_fluid + self.sharers.len()
     }
 
-    /// Area vector of the interface particle, or image of one, at the other end of an entry.
+    /// Area vector of the interface particle, or of its image, at the other end of an entry.
     fn wall(&self, link: &Link<D>) -> Vector<D> {
         let Kind::Wall(transform) = link.kind else { return Vector::ZERO };
         let a = self.walls[link.other as usize - self.n_fluid];
         if transform == ITSELF { a } else { Vector::from_fn(|d| self.signs[transform as usize][d] * a[d]) }
     }
 
-    /// W Aᵀ λ of one entry of row `i`: the change of its area vector.
+    /// Change of the area vector of one entry of row `i`: W Aᵀ λ.
     #[inline(always)]
     fn change(&self, i: usize, link: &Link<D>, y: &[Row<D>]) -> Vector<D> {
         match link.kind {
@@ -265,7 +268,7 @@ impl<'a, const D: usize> Problem<'a, D> {
         }
     }
 
-    /// The same of one between particles, in whose middle it stands, over its weight.
+    /// Change of the area vector between two particles, located at the midpoint, divided by its weight.
     #[inline(always)]
     fn pair_change(&self, own: &Row<D>, link: &Link<D>, middle: &[f32; D], y: &[Row<D>]) -> Lanes {
         let mut change = own.at(middle);
@@ -275,7 +278,7 @@ impl<'a, const D: usize> Problem<'a, D> {
         change
     }
 
-    /// The field of the particle at the other end of an entry in the middle between both.
+    /// Value at the midpoint of the field of the particle at the other end of an entry.
     #[inline(always)]
     fn there(&self, link: &Link<D>, middle: &[f32; D], other: &Row<D>) -> Lanes {
         let back = opposite(middle);
@@ -285,7 +288,7 @@ impl<'a, const D: usize> Problem<'a, D> {
         }
     }
 
-    /// (A W Aᵀ + ε) y in the row of a fluid particle.
+    /// The product (A W Aᵀ + ε) y in the row of a fluid particle.
     #[inline(always)]
     fn row(&self, i: usize, y: &[Row<D>]) -> Row<D> {
         let (own, mut row) = (&y[i], self.soft(i, &y[i]));
@@ -301,7 +304,7 @@ impl<'a, const D: usize> Problem<'a, D> {
         if beyond.is_empty() { row } else { row.plus(1.0, &self.row_beyond(i, beyond, y)) }
     }
 
-    /// The part of it from entries that are no fluid particles.
+    /// Contribution to the product from entries whose other end is not a fluid particle.
     #[inline(never)]
     fn row_beyond(&self, i: usize, entries: Range<usize>, y: &[Row<D>]) -> Row<D> {
         let mut row = Row::ZERO;
@@ -318,7 +321,7 @@ impl<'a, const D: usize> Problem<'a, D> {
         row
     }
 
-    /// The part of it that is not of the pairs.
+    /// Contribution to the product from the softness and the mobility of the volume.
     #[inline(always)]
     fn soft(&self, i: usize, y: &Row<D>) -> Row<D> {
         let mut row = y.slopes(self.tolerance(i));
@@ -326,14 +329,14 @@ impl<'a, const D: usize> Problem<'a, D> {
         row
     }
 
-    /// out = (A W Aᵀ + ε) y.
+    /// Computes out = (A W Aᵀ + ε) y.
     fn apply(&self, y: &[Row<D>], out: &mut [Row<D>]) {
         let (fluid, walls) = out.split_at_mut(self.n_fluid);
         sweep(fluid, |i| self.row(i, y));
         sweep(walls, |w| Row::ZERO.with_share(self.wall_row(w, y)));
     }
 
-    /// How freely linear consistency is missed.
+    /// Softness of linear consistency for particle `i`, with units.
     fn tolerance(&self, i: usize) -> f64 {
         self.softness[i] * self.unit[i] * self.unit[i]
     }
@@ -342,7 +345,7 @@ impl<'a, const D: usize> Problem<'a, D> {
         VOLUME_FREEDOM * self.unit[i] * self.unit[i]
     }
 
-    /// Defects of all conditions: of area vectors, shares and volumes as they are.
+    /// Defects of all constraints for the current area vectors, shares and volumes.
     fn defects(&self, operators: &Operators<D>) -> Vec<Row<D>> {
         let mut all = self.sums(operators, Row::ZERO, |row, s, d| row.add(1.0, &lanes(s), &part_of(d, 1.0)));
         sweep_slots(&mut all, |i, row| row.add_to_trace(-self.volume[i]));
@@ -354,14 +357,14 @@ impl<'a, const D: usize> Problem<'a, D> {
         all
     }
 
-    /// For every fluid particle what `add(sum, s, d)` makes of its area vectors s, which stand at the offsets d from it.
+    /// For every fluid particle, accumulates `add(sum, s, d)` over its area vectors s at the offsets d.
     fn sums<T: Clone + Send>(
         &self,
         operators: &Operators<D>,
         zero: T,
         add: impl Fn(&mut T, &Vector<D>, &Vector<D>) + Sync,
     ) -> Vec<T> {
-        // room for the walls too
+        // capacity for the walls too
         let mut all = Vec::with_capacity(self.n_rows());
         all.resize(self.n_fluid, zero);
         let (cloud, parts) = (self.cloud, operators.fluid_parts());
@@ -382,7 +385,8 @@ impl<'a, const D: usize> Problem<'a, D> {
         all
     }
 
-    /// Changes area vectors by `change(i, link)`, computed at either end of a pair alike but for the sign.
+    /// Adds `change(i, link)` to the area vectors; the change is computed equally, except for its sign, at either end
+    /// of a pair.
     fn alter(&self, operators: &mut Operators<D>, change: impl Fn(usize, &Link<D>) -> Vector<D> + Sync) {
         operators.alter_areas(|i, j, s| match self.links.between(i, j) {
             Some((_, link)) if !link.is_wall() => *s + change(i, &link),
@@ -391,7 +395,7 @@ impl<'a, const D: usize> Problem<'a, D> {
         self.mirror(operators);
     }
 
-    /// Area vectors to images: computed at one end and copied to the other, sign reversed.
+    /// Sets the area vectors to images: computed at one end and copied to the other with the reversed sign.
     fn mirror(&self, operators: &mut Operators<D>) {
         let reverse = Reverse::new(self.cloud);
         let beyond = self.cloud.n_real();
@@ -413,7 +417,7 @@ impl<'a, const D: usize> Problem<'a, D> {
             let signs = &self.signs[t as usize];
             match partner.cmp(&p) {
                 Ordering::Greater => *s,
-                // seen from its own image only the part across the plane is left
+                // between a particle and its own image, only the component normal to the plane remains
                 Ordering::Equal => Vector::from_fn(|d| if signs[d] < 0.0 { s[d] } else { 0.0 }),
                 Ordering::Less => match known.get(&(other as usize, self.links.end(partner))) {
                     Some(seen) => Vector::from_fn(|d| -signs[d] * seen[d]),
@@ -423,14 +427,14 @@ impl<'a, const D: usize> Problem<'a, D> {
         });
     }
 
-    /// The volumes that belong to multipliers.
+    /// Volumes that correspond to the multipliers `y`.
     fn volumes(&self, y: &[Row<D>]) -> Vec<f64> {
         let mut volume = vec![0.0; self.n_fluid];
         sweep(&mut volume, |i| self.volume[i] - self.volume_freedom(i) * y[i].trace());
         volume
     }
 
-    /// Turns the guess into what belongs to multipliers.
+    /// Replaces the initial guess by the solution that corresponds to the multipliers.
     fn recover(&mut self, operators: &mut Operators<D>, y: Vec<Row<D>>) {
         self.factors = Factors::default();
         self.alter(operators, |i, link| self.change(i, link, &y));
@@ -438,7 +442,7 @@ impl<'a, const D: usize> Problem<'a, D> {
         self.volume = self.volumes(&y);
     }
 
-    /// Conjugate gradients for the multipliers, from those in `y`.
+    /// Solves for the multipliers by conjugate gradients, starting from `y`; returns the number of iterations.
     fn solve(&mut self, operators: &Operators<D>, y: &mut [Row<D>], levels: &Levels<D>, tolerance: f64) -> usize {
         self.factors = Factors::new(self.n_fluid, |i| self.own(i));
         let mut r = self.defects(operators);
@@ -454,10 +458,11 @@ impl<'a, const D: usize> Problem<'a, D> {
         let precondition = |r: &[Row<D>], z: &mut [Row<D>]| cycle.nearly_solve(self, r, z);
         let enough = |r: &[Row<D>]| sum(r.len(), |i| size(&r[i], i)) <= goal;
         let product = |y: &[Row<D>], out: &mut [Row<D>]| self.apply(y, out);
-        conjugate_gradients(y, &mut r, MOST_FOR_MULTIPLIERS, Symmetric { enough, product, precondition })
+        conjugate_gradients(y, &mut r, MAX_MULTIPLIER_ITERATIONS, Symmetric { enough, product, precondition })
     }
 
-    /// Raises ε around particles whose volume is too small; number of particles touched so far, zero when nothing was done.
+    /// Raises ε around particles whose volume is too small. Returns the number of particles affected so far, or zero
+    /// when nothing changed.
     fn soften(&mut self, volume: &[f64]) -> usize {
         let low: Vec<usize> = (0..self.n_fluid)
             .filter(|i| volume[*i].is_nan() || volume[*i] <= SMALLEST_VOLUME * self.unit[*i])
@@ -475,7 +480,7 @@ impl<'a, const D: usize> Problem<'a, D> {
         if low.is_empty() { 0 } else { self.softened.iter().filter(|s| **s).count() }
     }
 
-    /// The sum of the sizes of all area vectors of every fluid particle.
+    /// For every fluid particle, the sum of the magnitudes of its area vectors.
     fn surfaces(&self, operators: &Operators<D>) -> Vec<f64> {
         self.sums(operators, 0.0, |sum, s, _| *sum += s.norm())
     }
@@ -489,7 +494,7 @@ impl<'a, const D: usize> Problem<'a, D> {
             let miss = |c: usize| moment[c] - Vector::axis(c) * self.volume[i];
             let error = (0..D).map(|c| miss(c).norm_squared()).sum::<f64>().sqrt() / self.volume[i].abs();
             square += error * error;
-            // a number that is none counts as the largest
+            // NaN counts as the largest error
             largest = if error <= largest.0 || largest.0.is_nan() { largest } else { (error, i) };
             volume = volume.min(self.volume[i] / self.unit[i]);
         }
@@ -506,7 +511,7 @@ impl<'a, const D: usize> Problem<'a, D> {
         }
     }
 
-    /// What row `i` makes of its own multipliers.
+    /// The diagonal block of row `i`, as a function of its multipliers.
     fn own(&self, i: usize) -> impl Fn(&Row<D>) -> Row<D> {
         let (mut pairs, mut walls) = (Moments::<D>::ZERO, Vec::new());
         for (_, link) in self.links.of(i) {
@@ -530,8 +535,8 @@ impl<'a, const D: usize> Problem<'a, D> {
         self.links.of(i).map(|(_, l)| l).filter(|l| !l.is_wall())
     }
 
-    /// Calls `f(row, middle, weight)` for those of them to rows of a range that a way has passed; images of rows count as what is beyond
-    /// the range.
+    /// Calls `f(row, middle, weight)` for the entries of row `i` to rows of a range that the sweep has passed. Images
+    /// of rows count as lying outside the range.
     #[inline(always)]
     fn each_passed(&self, i: usize, range: &Range<usize>, way: Way, mut f: impl FnMut(usize, &[f32; D], f32)) {
         for p in self.links.range(i) {
@@ -544,7 +549,7 @@ impl<'a, const D: usize> Problem<'a, D> {
         }
     }
 
-    /// Sign with which component `r` of the row at the other end of an entry is seen.
+    /// Sign of component `r` of the row at the other end of an entry, as viewed from the first end.
     #[inline(always)]
     fn sign(&self, link: &Link<D>, r: usize) -> f64 {
         match link.kind {

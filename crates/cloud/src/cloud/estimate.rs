@@ -1,33 +1,34 @@
-//! How many particles a cloud will have, before any of it is made.
+//! Estimate of the number of particles of a cloud before it is built.
 //!
-//! Around a surface of measure S the levels of sizes s = h, 2h, 4h, … follow one another, each n = `layers` cells deep: level s
-//! fills the gas within n s/2 of the surface that finer ones have not filled. Its volume is estimated by Steiner's formula for a
-//! convex body, S r + ω_D r^D with r = n s/2, and cut off at the volume of the domain. A box with a spacing of its own holds
-//! V/s^D cells. What edges and curvature ask for beyond that is left out: the estimate is there to refuse what is far too large.
+//! Around a surface of area S, the levels of sizes s = h, 2h, 4h, … follow one another, each n = `layers` cells deep:
+//! the level of size s fills the gas within n s/2 of the surface that finer levels have not filled. Its volume is
+//! estimated by Steiner's formula for a convex body, S r + ω_D r^D with r = n s/2, and limited to the volume of the
+//! domain. A box with a spacing of its own holds V/s^D cells. Refinement at edges and by curvature is not included: the
+//! estimate serves to reject clouds that are far too large.
 use super::sources::SourceBox;
 use super::{CloudError, CloudSpec};
 use crate::geometry::Surface;
 use crate::math::Bounds;
 use crate::math::digits::short;
 
-/// Estimates are trusted to this factor: only what is larger by more than it is refused unbuilt.
+/// Factor of uncertainty of the estimate: only a cloud that exceeds the limit by more is rejected before it is built.
 const TRUST: f64 = 3.0;
-/// Cells of a tree for each particle: parents, and cells inside bodies.
+/// Number of tree cells per particle, including parents and cells inside bodies.
 const CELLS: usize = 2;
-/// Cells that are never too many.
+/// Number of cells that is always permitted.
 const FEW: usize = 1 << 16;
-/// Length of a body above which its unit is asked about: hardly anything that flies is longer in metres.
+/// Length of a body above which the message asks about its unit: few aircraft are longer in metres.
 const LONG: f64 = 90.0;
-/// Volume of the unit disc and the unit ball.
+/// Volume of the unit disc and of the unit ball.
 const UNIT_BALL: [f64; 2] = [std::f64::consts::PI, 4.0 / 3.0 * std::f64::consts::PI];
 
-/// What asks for particles, each with their number.
+/// Contributions to the number of particles, each with a remedy for the message.
 pub(super) struct Estimate {
     shares: Vec<(f64, String)>,
 }
 
 impl Estimate {
-    /// Counts what the surface and each of the `boxes`, the wake among them, ask for.
+    /// Estimates the contributions of the surface and of each of the `boxes`, the wake among them.
     pub(super) fn new<const D: usize>(
         spec: &CloudSpec<D>,
         domain: &Bounds<D>,
@@ -43,10 +44,10 @@ impl Estimate {
         Self { shares }
     }
 
-    /// Refuses what is surely more than `most` particles.
+    /// Rejects a cloud that has more than `most` particles for certain.
     pub(super) fn check(&self, most: usize) -> Result<(), CloudError> {
         let sum: f64 = self.shares.iter().map(|s| s.0).sum();
-        // not a number: infinitely many over an infinitely small size
+        // written so that NaN is rejected too: infinitely many cells of infinitely small size
         if sum <= TRUST * most as f64 {
             return Ok(());
         }
@@ -54,12 +55,12 @@ impl Estimate {
         Err(self.refused(about, most))
     }
 
-    /// Cells that a tree of at most `most` particles has.
+    /// Greatest number of cells of a tree of at most `most` particles.
     pub(super) fn most_cells(&self, most: usize) -> usize {
         most.saturating_mul(CELLS).max(FEW)
     }
 
-    /// Why this many `particles` are too many, with what asks for most of them.
+    /// The error for a cloud of too many `particles`, with a remedy for the largest contribution.
     pub(super) fn refused(&self, particles: String, most: usize) -> CloudError {
         let largest = self.shares.iter().max_by(|a, b| a.0.total_cmp(&b.0));
         let hint = largest.map_or_else(|| "raise `cloud.spacing`".to_owned(), |s| s.1.clone());
@@ -67,11 +68,11 @@ impl Estimate {
     }
 }
 
-/// Cells of the levels around a surface.
+/// Number of cells of the levels around a surface.
 fn around<const D: usize>(spec: &CloudSpec<D>, domain: &Bounds<D>, surface: &Surface<D>) -> f64 {
     let area: f64 = (0..surface.elements.len() as u32).map(|e| surface.element_area_vector(e).norm()).sum();
     let whole = volume(domain);
-    // on the surface itself sit interface particles
+    // the interface particles on the surface itself
     let mut count = area / spec.spacing.powi(D as i32 - 1);
     let (mut size, mut filled) = (spec.spacing, 0.0);
     while filled < whole && count.is_finite() {
@@ -83,9 +84,9 @@ fn around<const D: usize>(spec: &CloudSpec<D>, domain: &Bounds<D>, surface: &Sur
     count
 }
 
-/// What is to be changed where the surface asks for most.
+/// Remedy where the surface is the largest contribution.
 fn reason<const D: usize>(spec: &CloudSpec<D>, surface: &Surface<D>) -> String {
-    /// Layers that are more than a level of refinement ever needs.
+    /// A greater number of cells per level of refinement is never necessary.
     const MANY: f64 = 64.0;
     let length = surface.bounds().extent().max_abs();
     if length > LONG && length > 1e3 * spec.spacing {
@@ -101,7 +102,7 @@ fn reason<const D: usize>(spec: &CloudSpec<D>, surface: &Surface<D>) -> String {
     format!("raise `cloud.spacing` ({}): the bodies are {} long", short(spec.spacing), short(length))
 }
 
-/// What the `k`-th box is called in a case: those of the user, then the wake, or the domain.
+/// Remedy where the `k`-th box is the largest contribution: boxes of the user, then the wake, or the domain.
 fn name_of<const D: usize>(k: usize, spec: &CloudSpec<D>, has_bodies: bool) -> String {
     if k < spec.boxes.len() {
         return format!("raise `cloud.box[{k}].spacing` ({}), or make the box smaller", short(spec.boxes[k].spacing));

@@ -1,8 +1,8 @@
-//! Filling the background with particles.
+//! Placement of the particles in the background tree.
 //!
-//! A fluid particle sits in the middle of every leaf that lies outside the bodies and not nearer to a surface, or to an
-//! interface particle, than a fraction of its size; in 3-D those next to a wall then move (module `near_wall_smoothing`). The
-//! leaves along the sides of the domain carry the outer particles.
+//! A fluid particle is placed at the centre of every leaf that lies outside the bodies and keeps a minimum distance
+//! from the surface and from the interface particles. In 3-D the fluid particles next to a wall are then moved (module
+//! `near_wall_smoothing`). The leaves along the sides of the domain hold the outer particles.
 use std::sync::Arc;
 
 use super::columns::{Columns, LayerContext};
@@ -20,17 +20,18 @@ use crate::math::hilbert::hilbert_index;
 use crate::math::parallel::{CHUNK, order_by_key, parts, sweep_parts};
 use crate::math::{Bounds, Vector};
 
-/// Interface particles keep this distance, in spacings, from fluid particles.
+/// Minimum distance, in spacings, between fluid particles and interface particles.
 const CLEARANCE: f64 = 0.4;
-/// Dimension in which the particles next to a wall move; wall layers, where there are some, lie along it by themselves.
+/// Dimension in which the particles next to a wall are moved. Wall layers follow the wall by construction and need no
+/// move.
 const SETTLED: usize = 3;
-/// Bits that address a cell of the background.
+/// Number of bits of the address of a background cell along one axis.
 const CELL_BITS: u32 = 31;
-/// Share of the sum of two radii below which balls surely overlap.
+/// Fraction of the sum of two radii below which two balls overlap for certain.
 const FREE: f64 = 0.999;
 
 impl<const D: usize> Particles<D> {
-    /// Places all particles of a background.
+    /// Places all particles in the background tree.
     pub fn fill(
         tree: Arc<Tree<D>>,
         layout: &Layout<D>,
@@ -136,7 +137,7 @@ impl<const D: usize> Particles<D> {
         }
     }
 
-    /// Moves the fluid particles far from walls at random, by `jitter` spacings at most along each axis.
+    /// Displaces the fluid particles far from walls at random, by at most `jitter` spacings along each axis.
     fn shake(&mut self, jitter: f64) {
         for i in 0..self.n_fluid {
             if jitter > 0.0 && self.wall_distance[i].is_infinite() {
@@ -155,18 +156,19 @@ pub(super) struct Walls<'a, const D: usize> {
     back: Vec<Transform<D>>,
 }
 
-/// A ball without surface in it: centre, radius, and whether it lies inside a body.
+/// A ball that contains no part of the surface: centre, radius, and whether it lies inside a body.
 pub(super) type Ball<const D: usize> = (Vector<D>, f64, bool);
 
 impl<'a, const D: usize> Walls<'a, D> {
-    /// The surface, if there is one, in a domain with these images.
+    /// Prepares distance queries to `surface`, if there is one, and to its images under `transforms`.
     pub(super) fn new(surface: Option<&'a Surface<D>>, domain: Bounds<D>, transforms: &[Transform<D>]) -> Self {
         let back = transforms.iter().map(Transform::inverse).collect();
         Self { surface, closed: surface.is_some_and(Surface::is_closed), domain, back }
     }
 
-    /// Distance from a place for a particle of spacing `size` to the surface, infinite when far; `None` when the place is to
-    /// be left empty. `last` is the ball around the place that was looked at before.
+    /// Distance from `centre`, the position of a particle of spacing `size`, to the surface; infinite when it is far
+    /// away, `None` when no particle may be placed there. `last` holds the free ball around the previous position and
+    /// is updated.
     pub(super) fn distance(
         &self,
         (centre, size): (&Vector<D>, f64),
@@ -187,8 +189,8 @@ impl<'a, const D: usize> Walls<'a, D> {
         Some(distance)
     }
 
-    /// Whether the ball of radius `free` around `x`, which no surface enters, lies inside a body: where it overlaps the last
-    /// one, both lie on the same side of a closed surface.
+    /// Whether the ball of radius `free` around `x`, which contains no surface, lies inside a body. If it overlaps the
+    /// previous ball, both lie on the same side of a closed surface, and no ray test is necessary.
     fn inside(&self, surface: &Surface<D>, x: &Vector<D>, free: f64, last: &mut Option<Ball<D>>) -> bool {
         let same = last.filter(|l| self.closed && (l.0 - *x).norm() < FREE * (l.1 + free)).map(|l| l.2);
         let inside = same.unwrap_or_else(|| surface.inside(x));
@@ -197,7 +199,7 @@ impl<'a, const D: usize> Walls<'a, D> {
     }
 }
 
-/// Drops fluid leaves whose centre is too near to an interface particle.
+/// Removes fluid leaves whose centre is too near to an interface particle.
 fn blank_near_interface<const D: usize>(tree: &Tree<D>, placed: &Placed<D>, fluid: &mut Vec<(Leaf<D>, f64)>) {
     let mut drop = vec![false; tree.n_nodes()];
     for (x, h) in placed.x.iter().zip(&placed.spacing) {
@@ -210,7 +212,7 @@ fn blank_near_interface<const D: usize>(tree: &Tree<D>, placed: &Placed<D>, flui
     fluid.retain(|(leaf, _)| !drop[leaf.node as usize]);
 }
 
-/// The side of the domain that a leaf lies on, unless particles exist beyond it (symmetry, periodicity).
+/// The side of the domain that a leaf touches; `None` where particles exist beyond the side (symmetry, periodicity).
 pub(super) fn side_of<const D: usize>(
     leaf: &Leaf<D>,
     bounds: &Bounds<D>,
@@ -221,7 +223,7 @@ pub(super) fn side_of<const D: usize>(
         for end in 0..2 {
             let gap = if end == 0 { leaf.centre[d] - bounds.min[d] } else { bounds.max[d] - leaf.centre[d] };
             let open = matches!(sides[d][end], Side::FarField | Side::Held | Side::Outflow { .. });
-            // where two sides meet, the one that holds a state wins over an outflow
+            // Where two sides meet, the condition that prescribes a state has priority over an outflow.
             let better = found.is_none_or(|f| matches!(sides[f.0][f.1], Side::Outflow { .. }));
             if open && gap < 0.75 * leaf.size && better {
                 found = Some((d, end));
@@ -231,7 +233,7 @@ pub(super) fn side_of<const D: usize>(
     found
 }
 
-/// Columns with the numbers of their particles.
+/// Enters the indices of the fluid particles into the columns.
 fn gather<const D: usize>(columns: Columns<D>, sites: &[ParticleSite<D>]) -> Layers<D> {
     let mut numbers: Vec<(u32, u32, u32)> =
         sites.iter().zip(0..).filter_map(|(s, i)| s.layer.map(|(column, layer)| (column, layer, i))).collect();
@@ -240,14 +242,14 @@ fn gather<const D: usize>(columns: Columns<D>, sites: &[ParticleSite<D>]) -> Lay
     Layers::new(finished, columns.axes, sites.len())
 }
 
-/// Position of a cell along the space-filling curve.
+/// Position of a cell along the Hilbert curve.
 pub(super) fn curve_position<const D: usize>(cell: [u32; D]) -> u64 {
     let bits = 64 / D as u32;
     let shift = CELL_BITS.saturating_sub(bits);
     hilbert_index(cell.map(|c| c >> shift), bits.min(CELL_BITS))
 }
 
-/// A vector with components in [−1, 1] that depends on the cell alone.
+/// A pseudo-random vector with components in [−1, 1] that depends on the cell only.
 fn random_direction<const D: usize>(anchor: [u32; D]) -> Vector<D> {
     let mut state =
         anchor.iter().fold(0x9e37_79b9_7f4a_7c15u64, |s, a| (s ^ u64::from(*a)).wrapping_mul(0xbf58_476d_1ce4_e5b9));

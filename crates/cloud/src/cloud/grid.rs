@@ -1,4 +1,4 @@
-//! Points in square bins, for searches among interface particles.
+//! A hash grid of points, for range searches among interface particles.
 use std::collections::HashMap;
 use std::hash::{BuildHasherDefault, Hasher};
 
@@ -8,7 +8,8 @@ const NONE: u32 = u32::MAX;
 /// Odd multiplier with well mixed bits (Knuth's golden ratio in 64 bits).
 const MIX: u64 = 0x9e37_79b9_7f4a_7c15;
 
-/// Hash of bin coordinates: a multiplication a coordinate. Keys come from geometry, not from an adversary.
+/// Hash function for bin coordinates, with one multiplication per coordinate. The keys come from geometry, not from an
+/// adversary.
 #[derive(Clone, Copy, Default)]
 struct BinHasher(u64);
 
@@ -26,7 +27,7 @@ impl Hasher for BinHasher {
     }
 }
 
-/// Points in square bins; each bin is a list linked through `next`.
+/// Points in cubic bins; the points of each bin form a list linked through `next`.
 pub struct Grid<const D: usize> {
     size: f64,
     head: HashMap<(i32, i32, i32), u32, BuildHasherDefault<BinHasher>>,
@@ -34,12 +35,12 @@ pub struct Grid<const D: usize> {
 }
 
 impl<const D: usize> Grid<D> {
-    /// An empty grid with bins of width `size`.
+    /// An empty grid whose bins are `size` wide.
     pub fn new(size: f64) -> Self {
         Self { size, head: HashMap::default(), next: Vec::new() }
     }
 
-    /// Adds a point that goes by the number `k`.
+    /// Adds the point `x` with the number `k`.
     pub fn insert(&mut self, x: &Vector<D>, k: u32) {
         let bin = x.to_3d().map(|c| (c / self.size).floor() as i32);
         let head = self.head.entry((bin[0], bin[1], bin[2])).or_insert(NONE);
@@ -47,7 +48,7 @@ impl<const D: usize> Grid<D> {
         *head = self.next.len() as u32 - 1;
     }
 
-    /// Calls `f` for every point in the bins that the cube of half-width `reach` around `x` meets.
+    /// Calls `f` with the number of every point in the bins that the cube of half-width `reach` around `x` overlaps.
     pub fn near(&self, x: &Vector<D>, reach: f64, mut f: impl FnMut(u32)) {
         let x = x.to_3d();
         let bin = |d: usize, side: f64| if d < D { ((x[d] + side * reach) / self.size).floor() as i32 } else { 0 };

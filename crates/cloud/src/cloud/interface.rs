@@ -1,11 +1,13 @@
-//! Interface particles: where the surface meets the cloud.
+//! Placement of the interface particles on the surface.
 //!
-//! Surfaces end where the domain does: a plane of symmetry cuts a body in halves of which one is filled.
+//! Surfaces end where the domain ends: only the half of a body on the fluid side of a plane of symmetry carries
+//! particles.
 //!
-//! In 2-D they follow the outline at a spacing proportional to the local size of the background, half a spacing away from
-//! sharp edges; area vectors are chords between the midpoints of neighbours, so that they sum to zero exactly. In 3-D they
-//! are picked from dense samples of the surface (no two nearer than 0.78 h) and moved to the middle of what they stand for
-//! (Lloyd 1982, eight rounds); their area vectors are sums of the samples' and close as well as the surface does.
+//! In 2-D the particles follow the outline with a spacing proportional to the local size of the background cells, and
+//! start half a spacing away from sharp edges. Their area vectors are chords between the midpoints of neighbours, so
+//! that they sum exactly to zero. In 3-D the particles are selected from dense samples of the surface (no two nearer
+//! than 0.78 h) and moved to the centroid of the samples that they represent (eight iterations of Lloyd, 1982). Their
+//! area vectors are sums over these samples and therefore close as accurately as the surface does.
 use std::collections::BTreeMap;
 
 use super::Interface;
@@ -15,24 +17,25 @@ use crate::geometry::{Chain, Surface};
 use crate::math::parallel::{order_by_key, sweep};
 use crate::math::{Bounds, Vector};
 
-/// Spacing along the outline in cells of the background (2-D).
+/// Spacing along the outline, in background cells (2-D).
 const OUTLINE_SPACING: f64 = 0.85;
-/// Longest stretch of outline, in cells, over which the spacing counts as constant.
+/// Greatest length of a piece of outline, in background cells, over which the spacing is taken as constant.
 const LONGEST_STRIP: f64 = 0.5;
-/// Steepest growth of the spacing along the outline.
+/// Greatest growth rate of the spacing along the outline.
 const OUTLINE_GROWTH: f64 = 0.25;
-/// Smallest distance between picked samples in cells of the background (3-D).
+/// Minimum distance between selected samples, in background cells (3-D).
 const PICK_SPACING: f64 = 0.78;
-/// Size of the samples in cells (3-D): particles sit on samples, and half of this size away from the middle of what they
-/// stand for at worst, an error of first order in the force of the pressure. The lift of the ONERA M6 is 0.286 with 0.25, 0.2917 with this, 0.2916
-/// with half of it.
+/// Size of the samples, in background cells (3-D). Particles are located at samples and hence up to half a sample away
+/// from the centroid of what they represent, which is an error of first order in the pressure force. The lift
+/// coefficient of the ONERA M6 is 0.286 with a size of 0.25, 0.2917 with 0.125, and 0.2916 with 0.0625.
 const SAMPLE_SIZE: f64 = 0.125;
-/// Radius of the neighbourhood in which a sample looks for its owner, and of the fit of the curvature, in cells: a cell of
-/// Lloyd's partition has a radius below 0.8.
+/// Radius, in background cells, within which a sample searches for its owner and within which the curvature is fitted.
+/// The cells of Lloyd's partition have radii below 0.8.
 const AROUND: f64 = 2.0;
-/// Samples nearer to the side of the domain, in cells, are left out: the cap that closes half a body is no wall.
+/// Samples nearer to a side of the domain than this, in background cells, are left out: the cap that closes half a body
+/// is not a wall.
 const ON_PLANE: f64 = 1e-6;
-/// Rounds of Lloyd's iteration.
+/// Number of Lloyd iterations.
 const LLOYD_ROUNDS: usize = 8;
 /// Samples over those that the area asks for from which a surface consists of slivers: triangles that are halved leave 3 to 8.
 const MANY: f64 = 16.0;
@@ -41,30 +44,30 @@ const ROUNDING: f64 = 1e-9;
 /// Samples whose normals differ more (cosine) belong to different particles.
 const SAME_SIDE: f64 = -0.2;
 
-/// Interface particles of all bodies.
+/// Interface particles of all bodies. Lengths are in the unit of the geometry.
 #[derive(Clone, Default)]
 pub struct Placed<const D: usize> {
-    /// Positions, on the surface.
+    /// Positions on the surface.
     pub x: Vec<Vector<D>>,
-    /// Local spacings of the background.
+    /// Local spacing of the background at each particle.
     pub spacing: Vec<f64>,
-    /// Normals, areas, curvature, tags.
+    /// Normal, area, curvature, body and tag of each particle.
     pub interface: Vec<Interface<D>>,
-    /// Successor along the outline (2-D), `u32::MAX` at a sharp edge.
+    /// Index of the next particle along the outline (2-D); `u32::MAX` at a sharp edge.
     pub next: Vec<u32>,
-    /// Where the stretch of outline that belongs to each particle ends (2-D).
+    /// End point of the piece of outline that belongs to each particle (2-D).
     pub end: Vec<Vector<D>>,
 }
 
 /// A plane that ends the domain: axis, sign of the outward normal, coordinate.
 pub type Plane = (usize, f64, f64);
 
-/// Places interface particles on every body, as far as it lies inside `planes`.
+/// Places interface particles on every body, on the inner side of all `planes`.
 pub fn place<const D: usize>(surface: &Surface<D>, tree: &Tree<D>, planes: &[Plane]) -> Placed<D> {
     if D == 2 { outline(surface, tree, planes) } else { scatter(surface, tree, planes) }
 }
 
-/// 2-D: one smooth piece of outline after the other.
+/// 2-D: places particles on one smooth piece of outline after the other.
 fn outline<const D: usize>(surface: &Surface<D>, tree: &Tree<D>, planes: &[Plane]) -> Placed<D> {
     let mut placed = Placed::default();
     let mut piece = 0;
@@ -77,7 +80,8 @@ fn outline<const D: usize>(surface: &Surface<D>, tree: &Tree<D>, planes: &[Plane
     placed
 }
 
-/// Part of an element of the outline, no longer than half a cell of the background: from one barycentric weight to another.
+/// Part of an element of the outline, at most half a background cell long, given by the barycentric weights of its
+/// ends.
 #[derive(Clone, Copy, Debug)]
 struct Strip {
     element: u32,
@@ -94,7 +98,7 @@ impl Strip {
     }
 }
 
-/// Strips of a chain between the planes; more than one run where a plane cuts it.
+/// Connected runs of strips of a chain between the planes; there are several where a plane cuts the chain.
 fn runs<const D: usize>(
     surface: &Surface<D>,
     tree: &Tree<D>,
@@ -118,7 +122,7 @@ fn runs<const D: usize>(
             open = inside;
         }
     }
-    // the walk around a closed outline began inside a run
+    // true when a closed outline was entered inside a run, so that the last run continues in the first
     let starts_inside = runs.first().is_some_and(|r| r[0].element == chain.elements[0] && r[0].from == 0.0);
     if cut && chain.closed && open && starts_inside && runs.len() > 1 {
         let first = runs.remove(0);
@@ -127,7 +131,7 @@ fn runs<const D: usize>(
     runs.into_iter().map(|run| (run, chain.closed && !cut)).collect()
 }
 
-/// Halves an element, after cutting it at the planes, until its parts are short.
+/// Cuts an element at the planes and then halves its parts until they are short.
 fn strips<const D: usize>(surface: &Surface<D>, tree: &Tree<D>, element: u32, planes: &[Plane]) -> Vec<Strip> {
     let whole = Strip { element, from: 0.0, to: 1.0 };
     let (a, b) = (whole.at(surface, 0.0).0, whole.at(surface, 1.0).0);
@@ -149,7 +153,7 @@ fn strips<const D: usize>(surface: &Surface<D>, tree: &Tree<D>, element: u32, pl
     done
 }
 
-/// One piece of outline.
+/// Places the particles of one smooth piece of outline.
 fn outline_piece<const D: usize>(
     surface: &Surface<D>,
     tree: &Tree<D>,
@@ -172,7 +176,7 @@ fn outline_piece<const D: usize>(
         let here = walk.to(k as f64 + 0.5);
         let end = walk.to(k as f64 + 1.0);
         let chord = end.x - corner.x;
-        // the fluid lies to the left or right of the walk as the normals say
+        // the normals decide whether the fluid lies to the left or to the right of the direction of travel
         let mut area = Vector::ZERO;
         (area[0], area[1]) = (chord[1], -chord[0]);
         let area = if area.dot(&here.normal) >= 0.0 { area } else { -area };
@@ -204,14 +208,14 @@ fn outline_piece<const D: usize>(
     }
 }
 
-/// The tensor ∂n/∂x that turns the chord into the change of the normal, along the chord only.
+/// The tensor ∂n/∂x of rank one that maps the chord to the change of the normal.
 fn rank_one<const D: usize>(change: &Vector<D>, chord: &Vector<D>) -> [Vector<D>; D] {
     let slope = change.dot(chord) / chord.norm_squared();
     let t = chord.unit();
     std::array::from_fn(|r| t * (slope * t[r]))
 }
 
-/// Makes `h` grow no faster than `OUTLINE_GROWTH` along the outline.
+/// Limits the growth rate of `h` along the outline to `OUTLINE_GROWTH`.
 fn limit_growth(h: &mut [f64], lengths: &[f64], closed: bool) {
     let n = h.len();
     for _ in 0..if closed { 2 } else { 1 } {
@@ -230,7 +234,7 @@ fn limit_growth(h: &mut [f64], lengths: &[f64], closed: bool) {
     }
 }
 
-/// A walk along strips, forward only.
+/// Integration of the number of spacings along the strips, in the forward direction only.
 struct Walk<'a, const D: usize> {
     surface: &'a Surface<D>,
     strips: &'a [Strip],
@@ -247,7 +251,7 @@ struct Stop<const D: usize> {
 }
 
 impl<const D: usize> Walk<'_, D> {
-    /// The point after `k` particle spacings.
+    /// The point at `k` particle spacings from the start.
     fn to(&mut self, k: f64) -> Stop<D> {
         let target = k * self.scale;
         while self.position + 1 < self.steps.len() && target - self.passed > self.steps[self.position] {
@@ -260,7 +264,7 @@ impl<const D: usize> Walk<'_, D> {
     }
 }
 
-/// A small piece of surface.
+/// A small piece of surface, from which interface particles are selected.
 #[derive(Clone, Copy)]
 struct Sample<const D: usize> {
     x: Vector<D>,
@@ -300,7 +304,7 @@ fn sort_along_curve<const D: usize>(samples: &mut [Sample<D>]) {
     permute(samples, &mut order);
 }
 
-/// Puts at every place k what stands at `order[k]`, cycle by cycle; `order` is used up.
+/// Permutes `all` in place so that position k holds the former element `order[k]`; `order` is overwritten.
 fn permute<T: Copy>(all: &mut [T], order: &mut [u32]) {
     for start in 0..order.len() {
         let (first, mut k) = (all[start], start);
@@ -319,7 +323,7 @@ fn permute<T: Copy>(all: &mut [T], order: &mut [u32]) {
 /// Samples that keep `PICK_SPACING` between them, first come first served, and for every sample the one that is in its way: the nearest, or
 /// where samples crowd on slivers any one of them.
 fn pick<const D: usize>(samples: &[Sample<D>]) -> (Vec<usize>, Vec<u32>) {
-    // one grid for every spacing, so that bins fit all queries
+    // one grid for each spacing, so that the bins suit all queries
     let mut grids: BTreeMap<u64, Grid<D>> = BTreeMap::new();
     for s in samples {
         grids.entry(s.spacing.to_bits()).or_insert_with(|| Grid::new(2.0 * PICK_SPACING * s.spacing));
@@ -472,10 +476,12 @@ fn gather<const D: usize>(surface: &Surface<D>, samples: &[Sample<D>], chosen: &
     placed
 }
 
-/// ∂n/∂x along the surface by least squares over (offset, change of normal), weights 1/r².
+/// Curvature tensor ∂n/∂x along the surface by least squares over pairs (offset, change of normal) with the weights
+/// 1/r².
 fn shape_operator<const D: usize>(normal: &Vector<D>, around: &[(Vector<D>, Vector<D>)]) -> [Vector<D>; D] {
     let tangential = |d: &Vector<D>| *d - *normal * d.dot(normal);
-    // one artificial offset along the normal, without change, fixes the slope that the surface does not determine
+    // an artificial offset along the normal, without change, determines the slope across the surface, which the data
+    // leave open
     let reach = around.iter().map(|a| a.0.norm()).fold(0.0, f64::max).max(f64::MIN_POSITIVE);
     let mut offsets: Vec<Vector<D>> = around.iter().map(|(d, _)| tangential(d)).collect();
     offsets.push(*normal * reach);

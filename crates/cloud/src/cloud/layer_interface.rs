@@ -1,32 +1,33 @@
-//! Neighbours in the layers, and where layers meet the background.
+//! Neighbour lists of the particles in wall layers, and at the interface between layers and background.
 //!
-//! In the layers a particle sees the cross (i ± 1, k), (i, k ± 1), in space all columns beside its own; where the adjacent column is one
-//! layer shorter, its last particle instead. The last two layers, and every layer of a column beside a sharp edge, see the background as well:
-//! everything in sight within ρ (h_i + h_j)/2, which includes the last two layers of columns on other walls that face them.
+//! Inside the layers, a particle has the neighbours (i ± 1, k) and (i, k ± 1), in 3-D those in all adjacent columns;
+//! where the adjacent column is one layer shorter, its last particle instead. The particles of the last two layers, and
+//! of every layer of a column at a sharp edge, have background neighbours as well: all visible particles within ρ (h_i
+//! + h_j)/2, which include the last two layers of columns on opposite walls.
 use super::layers::Beside;
 use super::neighbours::{IDENTITY, Search, Seen};
 use crate::math::Vector;
 
-/// Columns on walls whose normals differ less (cosine) do not see one another.
+/// Columns on walls whose normals are more similar than this cosine are not neighbours.
 const OTHER_WALL: f64 = 0.5;
-/// Factor on the radius where a last layer sees nothing above it.
+/// Factor on the search radius where a particle of the last layer has no neighbour above it.
 const WIDER: f64 = 1.5;
-/// Rise, in layers, of what counts as above.
+/// Height, in layers, above which a neighbour counts as lying above a particle.
 const HIGHER: f64 = 0.5;
-/// Layers that a wall fit uses.
+/// Number of layers that a wall fit uses.
 const FIT_LAYERS: usize = 3;
-/// Columns that a wall fit uses, in 2-D, and at least in 3-D.
+/// Number of columns that a wall fit uses in 2-D, and at least in 3-D.
 const FIT_COLUMNS: [usize; 2] = [3, 5];
-/// Fewest particles of a wall fit in the layers: a quadratic one with three rows to spare.
-const FIT_LEAST: [usize; 2] = [8, 12];
+/// Minimum number of particles of a wall fit inside the layers: a quadratic fit with three rows to spare.
+const MIN_FIT: [usize; 2] = [8, 12];
 
 impl<const D: usize> Search<'_, D> {
-    /// True when particle `i` lies in a layer, or is the interface particle under one.
+    /// True when particle `i` lies in a layer, or is the interface particle of a column with layers.
     pub(super) fn in_layers(&self, i: usize) -> bool {
         self.particles().layers.slot(i).is_some()
     }
 
-    /// Everything that particles in layers see and are seen by, sorted.
+    /// All neighbour pairs of the particles in layers, in both directions, sorted.
     pub(super) fn links(&self) -> Vec<(u32, Seen)> {
         let layers = &self.particles().layers;
         let mut links = Vec::new();
@@ -49,7 +50,8 @@ impl<const D: usize> Search<'_, D> {
         links
     }
 
-    /// Particle in layer `k` of a column; layer 0 is the interface particle.
+    /// Particle of layer `k` of column `c`; layer 0 is the interface particle. `None` when the column has no such
+    /// layer.
     fn member(&self, c: usize, k: usize) -> Option<usize> {
         let p = self.particles();
         match k.checked_sub(1) {
@@ -58,12 +60,12 @@ impl<const D: usize> Search<'_, D> {
         }
     }
 
-    /// Particle in layer `k` of a column beside another, or the image of it.
+    /// Particle of layer `k` of an adjacent column, or its image.
     fn member_beside(&self, other: &Beside, k: usize) -> Option<Seen> {
         self.member(other.column as usize, k).map(|i| (i as u32, other.image.unwrap_or(IDENTITY)))
     }
 
-    /// The particles beside, below and above layer `k` of a column.
+    /// Neighbours of layer `k` of column `c` in the adjacent columns, below and above.
     fn cross(&self, c: usize, k: usize) -> Vec<Seen> {
         let mut seen: Vec<Seen> = [k.checked_sub(1), Some(k + 1)]
             .into_iter()
@@ -76,14 +78,15 @@ impl<const D: usize> Search<'_, D> {
         seen
     }
 
-    /// Whether anything lies above a particle in the last layer.
+    /// True when one of the neighbours lies above particle `i` of the last layer.
     fn sees_above(&self, i: usize, seen: &[Seen]) -> bool {
         let p = self.particles();
         let rise = |s: &Seen| self.offset(i, &p.x[i], *s)[D - 1];
         seen.iter().any(|s| rise(s) > HIGHER * p.spacing[i])
     }
 
-    /// What particle `i` in column `c` sees beyond its column and those beside it, in a ball `wider` than usual.
+    /// Adds the neighbours of particle `i` in column `c` outside its own and the adjacent columns, within `wider` times
+    /// the usual radius.
     fn beyond(&self, c: usize, i: usize, wider: f64, seen: &mut Vec<Seen>) {
         let layers = &self.particles().layers;
         self.candidates(i, wider * self.ball(i), |k, t| {
@@ -97,8 +100,8 @@ impl<const D: usize> Search<'_, D> {
         });
     }
 
-    /// Whether two particles of columns on walls that face one another may see one another: both in the last two layers, or,
-    /// in the two columns beside a sharp edge, one of them there or at the wall.
+    /// Whether two particles of columns on opposite walls may be neighbours: both must lie in the last two layers;
+    /// beside a sharp edge it suffices that one of them lies there or at the wall.
     fn faces(&self, i: usize, c: usize, (other, layer): (usize, usize), t: u8) -> bool {
         let layers = &self.particles().layers;
         let last = |c: usize, k: usize| k > 0 && k + 2 > layers.count(c);
@@ -109,7 +112,7 @@ impl<const D: usize> Search<'_, D> {
         normal.dot(layers.normal(c)) < OTHER_WALL && (a && b || broken(c) && broken(other) && (a || b))
     }
 
-    /// Pairs that a widened row may have: none inside the layers but those a step away.
+    /// Whether a pair may be added when a neighbour list is enlarged: inside the layers only pairs one step apart may.
     pub(super) fn may_join(&self, i: usize, (k, t): Seen, d: &Vector<D>) -> bool {
         let layers = &self.particles().layers;
         let inner = |i: usize| layers.slot(i).is_some_and(|(c, k)| !layers.is_rim(c, k));
@@ -121,12 +124,12 @@ impl<const D: usize> Search<'_, D> {
         !inner(i) && !inner(k as usize) && (!both || layers.steps(i, source, d).is_some_and(|s| s.1.abs() <= 1))
     }
 
-    /// Fluid particles from which the state of the interface particle under column `c` is fitted; too few where the layers
-    /// are.
+    /// Fluid particles of the layers from which the state of the interface particle of column `c` is fitted; too few
+    /// where the layers end.
     fn column_cloud(&self, c: usize) -> Vec<Seen> {
         let layers = &self.particles().layers;
         let mut columns = vec![(c, IDENTITY)];
-        // those around, and around them beside a sharp edge
+        // the adjacent columns; beside a sharp edge also those adjacent to them
         let mut ring = 0..1;
         while columns.len() < FIT_COLUMNS[D - 2] && !ring.is_empty() {
             for k in ring.clone() {
@@ -148,11 +151,12 @@ impl<const D: usize> Search<'_, D> {
         columns.iter().flat_map(of).collect()
     }
 
-    /// The fluid that an interface particle takes its state from: its own layers and those beside, else all in front of it.
+    /// Adds the fluid particles from which the state of interface particle `w` is fitted: those of its own and the
+    /// adjacent columns, or all visible ones in front of it.
     pub(super) fn wall_cloud(&self, w: usize, list: &mut Vec<Seen>) {
         let i = w + self.particles().n_fluid;
         let layers = if self.in_layers(i) { self.column_cloud(w) } else { Vec::new() };
-        if layers.len() >= FIT_LEAST[D - 2] {
+        if layers.len() >= MIN_FIT[D - 2] {
             list.extend(layers);
         } else {
             self.fluid_in_front(i, list);

@@ -1,16 +1,18 @@
-//! Where wall layers end early, in words.
+//! Messages about wall layers that end early.
 //!
-//! Columns stop before they fold, cross or meet (module `columns`). That is safe, but where a column stops while its layers
-//! are still much thinner than long, a shear layer beyond them sees the plain background. For every reason there is one note:
-//! how many columns, the place of the worst, how many layers it has, and what helps.
+//! Columns end before they fold, cross or meet (module `columns`). Where a column ends while its layers are still much
+//! thinner than their spacing along the wall, a shear layer that continues beyond them is resolved by the plain
+//! background only. There is one message for each reason, with the number of columns, the place of the thinnest end,
+//! its number of layers, and a remedy.
 use super::Cloud;
 use super::layers::{Column, End};
 use crate::math::Vector;
 
-/// Last distance between layers over the distance to the columns beside it, below which a column ends early.
+/// A column ends early when the thickness of its last layer is less than this fraction of the distance to the adjacent
+/// columns.
 const EARLY: f64 = 0.5;
 
-/// Columns that end early for one reason.
+/// Columns that end early for the same reason.
 struct Ended {
     n: usize,
     ratio: f64,
@@ -18,13 +20,13 @@ struct Ended {
     at: usize,
 }
 
-/// One note for each reason for which columns end early.
+/// One message for each reason for which columns end early.
 pub(super) fn notes<const D: usize>(cloud: &Cloud<D>) -> Vec<String> {
     let columns = &cloud.layers.columns;
     let n = columns.len();
     if n > 0 && columns.iter().all(|c| c.particles.is_empty() && c.end == End::Planned) {
         return vec![
-            "no wall layer at all: `cloud.wall_layers.first` is larger than the spacing along the walls; hint: lower it"
+            "there are no wall layers: `cloud.wall_layers.first` is larger than the spacing along the walls; hint: lower it"
                 .into(),
         ];
     }
@@ -34,13 +36,13 @@ pub(super) fn notes<const D: usize>(cloud: &Cloud<D>) -> Vec<String> {
 }
 
 impl<const D: usize> Cloud<D> {
-    /// Where wall layers end early and why, in words.
+    /// Messages about wall layers that end early, one for each reason, with the place and a remedy.
     pub fn early_ends(&self) -> Vec<String> {
         notes(self)
     }
 }
 
-/// The columns that end early for a reason; `None` when there are none.
+/// The columns that end early for one reason; `None` when there are none.
 fn gathered<const D: usize>(cloud: &Cloud<D>, end: End) -> Option<Ended> {
     let mut found: Option<Ended> = None;
     for (w, column) in cloud.layers.columns.iter().enumerate().filter(|(_, c)| c.end == end) {
@@ -57,7 +59,7 @@ fn gathered<const D: usize>(cloud: &Cloud<D>, end: End) -> Option<Ended> {
     found
 }
 
-/// Distance between the last two layers of a column; zero without layers.
+/// Distance between the last two layers of a column; zero for a column without layers.
 fn thickness(column: &Column) -> f64 {
     match column.heights[..] {
         [] => 0.0,
@@ -69,25 +71,27 @@ fn thickness(column: &Column) -> f64 {
 fn describe<const D: usize>(end: End, found: &Ended, (n, most): (usize, usize), cloud: &Cloud<D>) -> String {
     let (why, hint) = match end {
         End::Meeting => (
-            "before they meet another part of the wall or its layers",
-            "a larger `growth` or `first`, a finer spacing there (`cloud.box`), a rounded corner or a wider gap keep more of them",
+            "because they would meet another part of the wall or its layers",
+            "to keep more layers, raise `growth` or `first`, refine there (`cloud.box`), round the corner or widen the gap",
         ),
         End::Fold => (
-            "before they fold in a concave bend",
-            "a larger `growth` keeps them lower, a rounder bend or a finer spacing there (`cloud.box`) keep more of them",
+            "because they would fold in a concave bend",
+            "raise `growth`, which makes the layers lower; to keep more layers, round the bend or refine there (`cloud.box`)",
         ),
-        End::Fan => ("because a convex bend spreads them", "raise `cloud.curvature_levels`"),
-        End::Side | End::Planned => ("at the side of the domain", "give the wall more room, or a side of symmetry"),
+        End::Fan => ("because a convex bend spreads them too far", "raise `cloud.curvature_levels`"),
+        End::Side | End::Planned => {
+            ("at the side of the domain", "enlarge the domain there, or make the side a plane of symmetry")
+        }
     };
     let place = place(&cloud.x[cloud.n_fluid + found.at]);
     format!(
-        "wall layers end early over {} of {n} wall particles, {why}; the thinnest end is after {} of {most} layers, at {place}; \
+        "wall layers end early over {} of {n} wall particles, {why}; the thinnest one ends after {} of {most} layers, at {place}; \
          hint: {hint}",
         found.n, found.layers
     )
 }
 
-/// A place as a message shows it.
+/// A position as text for a message.
 pub(super) fn place<const D: usize>(x: &Vector<D>) -> String {
     let parts: Vec<String> = x.0.iter().map(|c| format!("{c:.5}")).collect();
     format!("({})", parts.join(", "))

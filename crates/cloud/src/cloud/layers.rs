@@ -1,93 +1,102 @@
-//! Layers of particles along the walls, thin across them.
+//! Wall layers: layers of particles along the walls that are thin across them.
 //!
-//! Every interface particle may carry a *column*: fluid particles on its normal at the heights η_k = Δ(1 + g + … + g^(k−1)),
-//! the same for all columns, so that particles of equal number k form a *layer* along the wall. In the layers the
-//! neighbours are a cross, (i ± 1, k) and (i, k ± 1), and fits are made in the space of these numbers: slopes f_ξ, f_η by
-//! least squares over the offsets (±1, 0), (0, ±1), the metric terms x_ξ, x_η with the same weights, and then
-//! ∇f = J⁻¹ (f_ξ, f_η) with the rows x_ξ, x_η of J. That is exact for linear fields at any aspect ratio and any curvature of
-//! the wall, and |det J| is the volume. In space the columns beside one stand around it (module `wall_stars`): for ±1 there are the
-//! ways to their feet along the wall, in mean distances, and layers of such columns are prisms. Where the layers end the neighbours come from the background as well, and fits are made
-//! in space as everywhere else: behind a sharp edge a neighbour that is many layers lower would count for the slope across the
-//! wall alone, nothing would be left of what comes along it, and gas that flows back around the edge would heap up there.
+//! Every interface particle may carry a *column*: fluid particles on its normal at the heights η_k = Δ(1 + g + … +
+//! g^(k−1)), which are the same for all columns, so that the particles of equal number k form a *layer* along the wall.
+//! Inside the layers, the neighbours of particle (i, k) form a cross, (i ± 1, k) and (i, k ± 1), and derivatives are
+//! fitted in the space of these numbers: the slopes f_ξ, f_η by least squares over the offsets (±1, 0), (0, ±1), the
+//! metric terms x_ξ, x_η with the same weights, and then ∇f = J⁻¹ (f_ξ, f_η), where x_ξ and x_η are the rows of J. This
+//! is exact for linear fields at any aspect ratio of the layers and any curvature of the wall, and |det J| is the
+//! volume.
 //!
-//! References: Visbal and Gaitonde, J. Comput. Phys. 181 (2002), for metric terms that must be taken with the weights of the
-//! scheme; Pirzadeh, AIAA J. 34 (1996), for layers that advance together and stop where fronts meet.
+//! In 3-D, several columns surround each column (module `wall_stars`). The offsets ±1 are then replaced by the
+//! directions to the feet of these columns along the wall, divided by their mean distance, and the layers consist of
+//! prisms.
+//!
+//! Where the layers end, the neighbour lists include background particles, and derivatives are fitted in physical space
+//! as everywhere else. Behind a sharp edge, a neighbour that is many layers lower would otherwise contribute to the
+//! slope across the wall only. The slope along the wall would be lost, and gas that flows back around the edge would
+//! accumulate there.
+//!
+//! References: Visbal and Gaitonde, J. Comput. Phys. 181 (2002), for metric terms that must be computed with the
+//! weights of the scheme; Pirzadeh, AIAA J. 34 (1996), for layers that advance together and end where fronts meet.
 use super::{Cloud, Interface};
 use crate::math::Vector;
 use crate::math::square::determinant;
 
 const NONE: u32 = u32::MAX;
-/// Least part of a piece of surface that is left where normals converge.
+/// Lower bound of the area factor of a piece of surface that is moved along converging normals.
 const FOLDED: f64 = 0.05;
 
-/// Why a column has no more layers.
+/// Reason why a column ends.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum End {
-    /// As many as were asked for, or as far apart as those beside it.
+    /// The column has the requested number of layers, or its layers have become isotropic.
     #[default]
     Planned,
     /// A convex bend spreads the columns too far.
     Fan,
     /// A concave bend brings the columns too near to one another.
     Fold,
-    /// Another part of a wall, or its layers.
+    /// Another part of a wall, or its layers, is too near.
     Meeting,
-    /// The side of the domain.
+    /// The side of the domain is too near.
     Side,
 }
 
-/// A column that stands beside another on the wall.
+/// A column that is adjacent to another one along the wall.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Beside {
-    /// Its number.
+    /// Index of the adjacent column.
     pub column: u32,
-    /// The transform whose image of it that is; itself without.
+    /// Transform under which the column is adjacent as an image; `None` when it is the column itself.
     pub image: Option<u8>,
-    /// The way to it along the wall, in the axes of the other and in mean distances: −1 and 1 along an outline.
+    /// Offset to its foot along the wall, in the axes of the first column and divided by the mean distance: −1 or 1
+    /// along an outline.
     pub step: [f64; 2],
 }
 
-/// Directions along the wall and normal of every column, what stands beside it, and whether something is missing on a side.
+/// Axes of every column (directions along the wall, then the normal), its adjacent columns, and whether a neighbour is
+/// missing on one side.
 pub(super) type Around<const D: usize> = (Vec<[Vector<D>; D]>, Vec<(Vec<Beside>, bool)>);
 
-/// The layers over one interface particle; empty where there are none.
+/// The layers over one interface particle; without particles where there are no layers.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Column {
-    /// Fluid particles, from the wall outward.
+    /// Indices of the fluid particles, from the wall outward.
     pub particles: Vec<u32>,
-    /// Their distances from the wall, along the normal.
+    /// Distances of these particles from the wall along the normal.
     pub heights: Vec<f64>,
-    /// Columns beside it: before and after it along the outline, around it in space.
+    /// Adjacent columns: the previous and the next one along an outline, the surrounding ones in 3-D.
     pub beside: Vec<Beside>,
-    /// Whether one is missing on a side: a sharp edge.
+    /// True when there is no adjacent column on one side, which is the case at a sharp edge.
     pub open: bool,
-    /// Why there are no more; that of the column beside it where that one cuts it short.
+    /// Reason why the column ends; for a column that an adjacent one limits, the reason of the adjacent one.
     pub end: End,
 }
 
-/// All columns, and where each particle stands in them.
+/// All columns of wall layers, and the position of each particle in them.
 #[derive(Clone, Debug, Default)]
 pub struct Layers<const D: usize> {
-    /// One column an interface particle, in the same order; none at all when the case asks for no layers.
+    /// One column for each interface particle, in the same order; empty when the case requests no layers.
     pub columns: Vec<Column>,
     axes: Vec<[Vector<D>; D]>,
     slots: Vec<(u32, u32)>,
-    /// Particles in layers whose neighbours do not all stand in the same or an adjacent column.
+    /// True for particles in layers that have a neighbour outside their own and the adjacent columns.
     mixed: Vec<bool>,
 }
 
-/// The particle that a neighbour is, or is the image of.
+/// A particle, given by itself or by one of its images.
 #[derive(Clone, Copy, Debug)]
 pub struct Source {
-    /// Its index.
+    /// Index of the particle.
     pub index: usize,
-    /// True for the image.
+    /// True when the neighbour is an image of the particle.
     pub image: bool,
 }
 
 impl<const D: usize> Layers<D> {
-    /// Gathers columns; `axes` are the directions along the wall and the normal of each, `n_fluid` the number of fluid
-    /// particles.
+    /// Combines the columns. `axes` are the directions along the wall and the normal of each column; `n_fluid` is the
+    /// number of fluid particles.
     pub(super) fn new(columns: Vec<Column>, axes: Vec<[Vector<D>; D]>, n_fluid: usize) -> Self {
         if columns.iter().all(|c| c.particles.is_empty()) {
             return Self { columns, ..Self::default() };
@@ -107,29 +116,30 @@ impl<const D: usize> Layers<D> {
         self.slots.is_empty()
     }
 
-    /// Column and layer of particle `i`; layer 0 is the interface particle of a column that has layers.
+    /// Column and layer of particle `i`. Layer 0 is the interface particle of a column that has layers; `None` outside
+    /// the layers.
     #[inline]
     pub fn slot(&self, i: usize) -> Option<(usize, usize)> {
         let (column, layer) = *self.slots.get(i)?;
         (column != NONE).then_some((column as usize, layer as usize))
     }
 
-    /// Directions along the wall and normal of a column.
+    /// Unit vectors along the wall, followed by the normal, of a column.
     pub fn axes(&self, column: usize) -> &[Vector<D>; D] {
         &self.axes[column]
     }
 
-    /// Normal of a column.
+    /// Unit normal of a column, into the fluid.
     pub fn normal(&self, column: usize) -> &Vector<D> {
         &self.axes[column][D - 1]
     }
 
-    /// Distance from the wall of layer `k` of a column.
+    /// Distance of layer `k` of a column from the wall.
     pub fn height(&self, column: usize, k: usize) -> f64 {
         if k == 0 { 0.0 } else { self.columns[column].heights[k - 1] }
     }
 
-    /// Distance between layers around layer `k` of a column that has layers.
+    /// Distance between adjacent layers at layer `k` of a column that has layers.
     pub fn thickness(&self, column: usize, k: usize) -> f64 {
         let top = self.columns[column].heights.len();
         let (low, high) = (k.saturating_sub(1), (k + 1).min(top));
@@ -141,8 +151,8 @@ impl<const D: usize> Layers<D> {
         self.columns[column].particles.len()
     }
 
-    /// Steps (along the wall, layers outward) from particle `i` to a neighbour at offset `d`, when that is in the
-    /// same or in an adjacent column.
+    /// Offset from particle `i` to a neighbour at the physical offset `d`, as steps along the wall and number of layers
+    /// outward; `None` when the neighbour is not in the same or an adjacent column.
     pub fn steps(&self, i: usize, other: Source, d: &Vector<D>) -> Option<([f64; 2], i32)> {
         let ((c, k), (c2, k2)) = (self.slot(i)?, self.slot(other.index)?);
         let up = k2 as i32 - k as i32;
@@ -150,26 +160,27 @@ impl<const D: usize> Layers<D> {
             return Some(([0.0; 2], up));
         }
         let towards = |b: &Beside| (0..D - 1).map(|a| b.step[a] * d.dot(&self.axes[c][a])).sum::<f64>();
-        // of several images of one column the one on that side
+        // if a column has several images, the one in the direction of the neighbour
         let is = |b: &&Beside| b.column as usize == c2 && b.image.is_some() == other.image;
         let there = self.columns[c].beside.iter().filter(is).max_by(|a, b| towards(a).total_cmp(&towards(b)))?;
         Some((there.step, up))
     }
 
-    /// Notes which rows see more than layers; `beyond(i)` tells it of a particle that stands in a layer.
+    /// Marks the particles in layers for which `beyond(i)` is true: those with neighbours outside their own and the
+    /// adjacent columns.
     pub(super) fn note_mixed(&mut self, beyond: impl Fn(&Self, usize) -> bool) {
         let mixed = (0..self.slots.len()).map(|i| self.slot(i).is_some() && beyond(self, i)).collect();
         self.mixed = mixed;
     }
 
-    /// Column and layer of particle `i` if its row is fitted in the space of those numbers.
+    /// Column and layer of particle `i` if its derivatives are fitted in the space of these numbers.
     #[inline]
     pub fn in_steps(&self, i: usize) -> Option<(usize, usize)> {
         self.slot(i).filter(|_| self.mixed.get(i) != Some(&true))
     }
 
-    /// Offset `d` from particle `i`, with spacing `h`, to a neighbour, as distances are judged in layers: along and across the
-    /// wall, both in parts of `h`; `d` itself outside the layers.
+    /// Offset `d` from particle `i` of spacing `h` to a neighbour in the coordinates in which distances are judged:
+    /// along and across the wall, both scaled to `h`, inside the layers; `d` itself outside them.
     pub fn offset(&self, i: usize, h: f64, other: Source, d: &Vector<D>) -> Vector<D> {
         let Some((c, k)) = self.slot(i) else { return *d };
         let axes = &self.axes[c];
@@ -179,8 +190,9 @@ impl<const D: usize> Layers<D> {
         }
     }
 
-    /// Volume of particle `i` in a layer: its part of the layer times height. A particle at the wall stands for half of it,
-    /// one in the last layer for the gap to the background as well.
+    /// Volume of particle `i` in a layer: area of its part of the layer times the height. An interface particle
+    /// represents half a layer; a particle of the last layer also represents the gap to the background. `None` outside
+    /// the layers.
     pub(super) fn volume(&self, i: usize, interface: &[Interface<D>], x: &[Vector<D>]) -> Option<f64> {
         let (c, k) = self.slot(i)?;
         let column = &self.columns[c];
@@ -195,7 +207,8 @@ impl<const D: usize> Layers<D> {
         Some(area * 0.5 * (below + above))
     }
 
-    /// Mean distance of layer `k` of a column from those beside it, along the wall; `feet` are the interface particles.
+    /// Mean distance along the wall between layer `k` of a column and the adjacent columns; `feet` are the interface
+    /// particles.
     fn length(&self, c: usize, k: usize, feet: &[Vector<D>]) -> f64 {
         let place = |b: usize| feet[b] + *self.normal(b) * self.height(c, k);
         let beside = self.columns[c].beside.iter().filter(|b| b.column as usize != c);
@@ -204,7 +217,7 @@ impl<const D: usize> Layers<D> {
         sum / f64::max(sides, 1.0)
     }
 
-    /// True for the last two layers of a column, and for all layers of one beside a sharp edge.
+    /// True for the last two layers of a column, and for all layers of a column at a sharp edge.
     pub(super) fn is_rim(&self, c: usize, k: usize) -> bool {
         let column = &self.columns[c];
         let broken = column.open || column.beside.iter().any(|b| self.columns[b.column as usize].particles.is_empty());
@@ -213,13 +226,15 @@ impl<const D: usize> Layers<D> {
     }
 }
 
-/// Factor by which a piece of surface with this curvature tensor grows when every point of it moves by `height` along its normal.
+/// Factor by which the area of a piece of surface with this curvature tensor grows when all its points move by `height`
+/// along the normal.
 fn swelling<const D: usize>(curvature: &[Vector<D>; D], height: f64) -> f64 {
     let moved: [Vector<D>; D] = std::array::from_fn(|r| Vector::axis(r) + curvature[r] * height);
     determinant(&moved).max(FOLDED)
 }
 
-/// Volume of a cell between two particles: that of the mean spacing; in layers the harmonic mean, which the thinner decides.
+/// Volume that belongs to the face between two particles: the mean spacing to the power D; in layers the harmonic mean
+/// of both volumes, which the thinner layer determines.
 pub(super) fn face_volume<const D: usize>(cloud: &Cloud<D>, i: usize, j: usize) -> f64 {
     if cloud.layers.slot(i).or(cloud.layers.slot(j)).is_none() {
         return (0.5 * (cloud.spacing[i] + cloud.spacing[j])).powi(D as i32);
@@ -227,13 +242,14 @@ pub(super) fn face_volume<const D: usize>(cloud: &Cloud<D>, i: usize, j: usize) 
     2.0 / (1.0 / cloud.volume[i] + 1.0 / cloud.volume[j])
 }
 
-/// The first layer reaches down to the wall: its volumes grow by the half layer that the interface particles stand for elsewhere.
-/// That half layer, where particle `i` is in the first layer.
+/// Volume between the first layer and the wall, where particle `i` lies in the first layer. The volume of the first
+/// layer extends down to the wall; elsewhere this half layer belongs to the interface particle.
 pub(super) fn below_first<const D: usize>(cloud: &Cloud<D>, i: usize) -> Option<f64> {
     cloud.layers.slot(i).filter(|s| s.1 == 1).map(|s| cloud.volume[cloud.n_fluid + s.0])
 }
 
-/// Factor by which the face between two particles grows with their volumes where both are in the first layer.
+/// Factor by which the face between two particles of the first layer grows because their volumes extend down to the
+/// wall.
 pub(super) fn grown_face<const D: usize>(cloud: &Cloud<D>, i: usize, j: usize) -> f64 {
     let j = cloud.source(j).index;
     match (below_first(cloud, i), below_first(cloud, j)) {

@@ -1,4 +1,4 @@
-//! From the specification to the background: domain, levels, sources of refinement.
+//! Layout of the background tree: domain, levels, and sources of refinement.
 use super::estimate::Estimate;
 use super::sources::{SIZE_SLACK, Source, SourceBox, Sources};
 use super::tree::{Forest, Tree};
@@ -7,24 +7,25 @@ use crate::case::Side;
 use crate::geometry::Surface;
 use crate::math::{Bounds, Vector};
 
-/// Half-width of the far field in body lengths, two and three dimensions.
+/// Default half-width of the far field in body lengths, for two and three dimensions.
 const FAR_FIELD: [f64; 2] = [40.0, 10.0];
-/// Turning angle in radians above which an edge of the surface asks for extra levels.
+/// Turning angle [rad] above which an edge of the surface is refined by additional levels.
 const SHARP: f64 = 0.35;
-/// Greatest relative misfit of an explicit domain to whole cells.
+/// Greatest relative deviation of the sides of an explicit domain from a whole number of cells.
 const MISFIT: f64 = 1e-6;
 
-/// The box of the run and its sides.
+/// The box that the domain fills and the boundary conditions on its sides.
 #[derive(Clone, Debug)]
 pub struct Layout<const D: usize> {
-    /// Root cells.
+    /// Root cells of the background tree.
     pub forest: Forest<D>,
-    /// Conditions on the sides, [axis][0: smallest, 1: largest coordinate].
+    /// Boundary conditions on the sides, `[axis][0: smallest, 1: largest coordinate]`.
     pub sides: [[Side; 2]; D],
 }
 
 impl<const D: usize> Layout<D> {
-    /// Lays out the domain.
+    /// Determines the root cells of the domain. Fails when an explicit domain is not a whole number of cells long, or
+    /// when a body crosses a side of the domain.
     pub fn new(spec: &CloudSpec<D>, surface: Option<&Surface<D>>) -> Result<Self, CloudError> {
         let sides = spec.sides;
         let forest = match (&spec.domain, surface) {
@@ -37,13 +38,13 @@ impl<const D: usize> Layout<D> {
         Ok(layout)
     }
 
-    /// The box itself.
+    /// Bounds of the domain.
     pub fn bounds(&self) -> Bounds<D> {
         let Forest { origin, root_size, roots, .. } = self.forest;
         Bounds { min: origin, max: origin + Vector::from_fn(|d| f64::from(roots[d]) * root_size) }
     }
 
-    /// Refuses bodies that lie outside the domain, or that a side through which gas comes and goes cuts.
+    /// Rejects bodies that lie outside the domain or cross a side with inflow or outflow.
     fn contains(&self, surface: &Surface<D>) -> Result<(), CloudError> {
         for (body, name) in surface.bodies.iter().enumerate() {
             let bounds = surface.bounds_of(body);
@@ -58,7 +59,7 @@ impl<const D: usize> Layout<D> {
                 let axis = ["x", "y", "z"][d];
                 return Err(CloudError::Layout(format!(
                     "body `{name}` from {} to {} lies across or beyond the side {axis} = {plane} of the domain\nhint: enlarge \
-                     `cloud.domain`, or move the body; only a side of symmetry may cut one",
+                     `cloud.domain`, or move the body; only a plane of symmetry may cut a body",
                     bounds.min, bounds.max
                 )));
             }
@@ -66,7 +67,7 @@ impl<const D: usize> Layout<D> {
         Ok(())
     }
 
-    /// Sides that end the domain: axis, sign of the outward normal, coordinate.
+    /// Sides that end the domain, as planes: axis, sign of the outward normal, coordinate.
     pub fn planes(&self) -> Vec<(usize, f64, f64)> {
         let low = |d: usize| self.forest.origin[d];
         let high = |d: usize| low(d) + f64::from(self.forest.roots[d]) * self.forest.root_size;
@@ -74,7 +75,7 @@ impl<const D: usize> Layout<D> {
         closed.flat_map(|d| [(d, -1.0, low(d)), (d, 1.0, high(d))]).collect()
     }
 
-    /// Every product of reflections and shifts that the sides of the domain call for.
+    /// All compositions of the reflections at planes of symmetry and the translations across periodic sides.
     pub fn transforms(&self) -> Vec<Transform<D>> {
         let identity = Transform { sign: Vector::splat(1.0), offset: Vector::ZERO };
         let mut all = vec![identity];
@@ -103,7 +104,8 @@ impl<const D: usize> Layout<D> {
     }
 }
 
-/// Root cells of an explicit domain: the largest power of two of the spacing that divides every side.
+/// Root cells of an explicit domain: their size is the largest power-of-two multiple of the spacing that divides every
+/// side.
 fn explicit<const D: usize>(spec: &CloudSpec<D>, domain: &Bounds<D>) -> Result<Forest<D>, CloudError> {
     let Bounds { min, max } = *domain;
     let spacing = spec.spacing;
@@ -131,7 +133,7 @@ fn explicit<const D: usize>(spec: &CloudSpec<D>, domain: &Bounds<D>) -> Result<F
     Ok(Forest { origin: min, root_size, roots, periodic })
 }
 
-/// One root cell around the bodies; planes of symmetry pass through the origin of their axis.
+/// One root cell around the bodies. Planes of symmetry pass through the origin of their axis.
 fn around<const D: usize>(spec: &CloudSpec<D>, surface: &Surface<D>) -> Forest<D> {
     let bounds = surface.bounds();
     let length = bounds.extent().max_abs();
@@ -139,14 +141,15 @@ fn around<const D: usize>(spec: &CloudSpec<D>, surface: &Surface<D>) -> Forest<D
     let spacing = spec.spacing;
     let half = spacing * 2f64.powf((wanted / spacing).log2().ceil());
     let centre = bounds.centre();
-    // the grid is aligned with the origin, so that a section that is symmetric about an axis gets a symmetric cloud
+    // The grid is aligned with the origin, so that the cloud of a section that is symmetric about an axis is symmetric
+    // too.
     let snap = |c: f64| (c / spacing).round() * spacing;
     let origin = Vector::from_fn(|d| match (spec.halves(d, 0), spec.halves(d, 1)) {
         (true, _) => 0.0,
         (_, true) => -half,
         _ => snap(centre[d]) - half,
     });
-    // where half of the space is cut off, cells of half the width fill the rest
+    // Where a plane of symmetry cuts off half of the space, root cells of half the width fill the other half.
     let cut = |d: usize| spec.halves(d, 0) || spec.halves(d, 1);
     let halved = (0..D).any(cut);
     let count = |d: usize| if !halved || cut(d) { 1 } else { 2 };
@@ -154,7 +157,8 @@ fn around<const D: usize>(spec: &CloudSpec<D>, surface: &Surface<D>) -> Forest<D
     Forest { origin, root_size, roots: std::array::from_fn(count), periodic: [false; D] }
 }
 
-/// The background tree; `extra` are sources that follow the solution.
+/// Builds the background tree. `extra` are sources of refinement that follow the solution. Fails when the cloud would
+/// be too large or when the wanted spacing is finer than the deepest level of the tree.
 pub fn background<const D: usize>(
     spec: &CloudSpec<D>,
     layout: &Layout<D>,
@@ -177,8 +181,8 @@ pub fn background<const D: usize>(
     tree.ok_or_else(|| size.refused(format!("more than {}", spec.most), spec.most))
 }
 
-/// Cells of the background around a surface and the sources in `extra`: somewhat more than the cloud will have particles, at a
-/// small part of the cost.
+/// Number of cells of the background tree around a surface and the sources in `extra`. This is slightly more than the
+/// number of particles of the cloud and costs a small part of building it.
 pub fn count<const D: usize>(
     spec: &CloudSpec<D>,
     surface: Option<&Surface<D>>,
@@ -188,7 +192,7 @@ pub fn count<const D: usize>(
     Ok(background(spec, &layout, surface, extra)?.leaves().count())
 }
 
-/// Refuses spacings that the deepest cells of the background are too large for.
+/// Rejects spacings that are finer than the deepest level of the tree.
 fn reaches<const D: usize>(layout: &Layout<D>, points: &[Source<D>], boxes: &[SourceBox<D>]) -> Result<(), CloudError> {
     let finest = points.iter().map(|p| p.spacing).chain(boxes.iter().map(|b| b.spacing)).fold(f64::INFINITY, f64::min);
     let possible = layout.forest.finest();
@@ -196,17 +200,18 @@ fn reaches<const D: usize>(layout: &Layout<D>, points: &[Source<D>], boxes: &[So
         return Ok(());
     }
     Err(CloudError::Layout(format!(
-        "a spacing of {finest:.3e} is asked for, but in a domain this large none is finer than {possible:.3e}\nhint: lower \
+        "the spacing {finest:.3e} is too fine for this domain: the finest possible spacing is {possible:.3e}\nhint: lower \
          `cloud.far_field`, or raise `cloud.spacing`"
     )))
 }
 
-/// Tells where the surface is more strongly curved than the cloud is allowed to follow.
+/// A warning with the place where the curvature of the surface asks for a finer spacing than `curvature_levels`
+/// permits; `None` where there is no such place.
 pub fn capped<const D: usize>(spec: &CloudSpec<D>, surface: &Surface<D>) -> Option<String> {
     let finest = finest(spec);
     let radius = |e: &u32| surface.radius[*e as usize];
     let mut sharp: Vec<u32> = (0..surface.elements.len() as u32).filter(|e| radius(e) < finest).collect();
-    // outlines that run out into a cusp bend as they please within a particle of their edge
+    // An outline that ends in a cusp may have any curvature within one particle spacing of its edge.
     if D == 2 {
         let mut edges = Vec::new();
         surface.for_each_sharp_point(0.0, finest, |x| edges.push(*x));
@@ -214,7 +219,7 @@ pub fn capped<const D: usize>(spec: &CloudSpec<D>, surface: &Surface<D>) -> Opti
         sharp.retain(|e| !beside(e));
     }
     sharp.sort_by(|a, b| radius(a).total_cmp(&radius(b)));
-    // in space tips taper off to a point: what is smaller than a particle is no more than that
+    // In 3-D the tips taper off to a point; a piece of surface smaller than a particle is therefore ignored.
     let (mut seen, patch) = (0.0, if D == 2 { 0.0 } else { finest.powi(D as i32 - 1) });
     let found = sharp.into_iter().find(|e| {
         seen += surface.element_area_vector(*e).norm();
@@ -223,8 +228,8 @@ pub fn capped<const D: usize>(spec: &CloudSpec<D>, surface: &Surface<D>) -> Opti
     let (x, radius) = (surface.corners(found)[0], radius(&found));
     let levels = (spec.spacing / (spec.curvature * radius).max(f64::MIN_POSITIVE)).log2().ceil();
     Some(format!(
-        "near {x} the surface is rounded with a radius of {radius:.2e}, but no spacing is finer than {finest:.2e}: \
-         `cloud.curvature_levels = {levels}` follows it (now {})",
+        "near {x} the surface has a radius of curvature of {radius:.2e}, but the finest spacing is {finest:.2e}: \
+         `cloud.curvature_levels = {levels}` resolves it (now {})",
         spec.curvature_levels
     ))
 }
@@ -245,7 +250,7 @@ fn user_boxes<const D: usize>(spec: &CloudSpec<D>, surface: Option<&Surface<D>>)
     boxes
 }
 
-/// Points of the surface with the spacing that the specification, the curvature and sharp edges ask for.
+/// Adds the points of the surface with the spacing that the specification, the curvature and the sharp edges ask for.
 fn surface_sources<const D: usize>(cloud: &CloudSpec<D>, surface: &Surface<D>, points: &mut Vec<Source<D>>) {
     let base = cloud.spacing;
     let finest = finest(cloud);

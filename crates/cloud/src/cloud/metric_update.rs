@@ -1,26 +1,27 @@
-//! Conservative coefficients carried along by a cloud that deforms.
+//! Update of conservative coefficients on a deforming cloud.
 //!
-//! A displacement with the gradient F takes an area vector to cof(F) s and a volume to det(F) V (Nanson's formula; Ogden,
-//! Non-Linear Elastic Deformations, 1984, section 2.2). With F fitted at every particle and its mean over the ends of an edge, what
-//! one particle loses another still gains to round-off; areas close as they did under affine motion, and to second order under any
-//! other, because cof(F) has no divergence (Piola's identity).
+//! A displacement with the gradient F maps an area vector s to cof(F) s and a volume V to det(F) V (Nanson's formula;
+//! Ogden, Non-Linear Elastic Deformations, 1984, section 2.2). F is fitted at every particle, and each edge uses the
+//! mean of its two ends. Fluxes therefore stay conservative to round-off. The area vectors close exactly under affine
+//! motion, and to second order under any other motion, because cof(F) is free of divergence (Piola's identity).
 use super::Cloud;
 use super::operators::{Operators, WallFace};
 use crate::math::Vector;
 use crate::math::parallel::{sweep, sweep_parts};
 use crate::math::square::{cofactors, determinant, times};
 
-/// Rows of a matrix.
+/// Rows of a D × D matrix.
 type Matrix<const D: usize> = [Vector<D>; D];
 
-/// cof(F) v.
+/// The product cof(F) v.
 fn cofactor_times<const D: usize>(f: &Matrix<D>, v: &Vector<D>) -> Vector<D> {
     times(&cofactors(f), v)
 }
 
 impl<const D: usize> Operators<D> {
-    /// Takes area vectors, pieces of wall and volumes from those of `origin`, a conservative fit of the cloud `from` that has moved
-    /// to where `cloud` is.
+    /// Computes area vectors, wall faces and volumes of `cloud` from those of `origin`, which are conservative
+    /// coefficients of the cloud
+    /// `from` before the displacement.
     pub fn metric_update(&mut self, cloud: &mut Cloud<D>, origin: &Self, from: &Cloud<D>) {
         let gradients = origin.displacement_gradients(cloud, from);
         let at = |i: usize| seen(cloud, &gradients, i);
@@ -39,7 +40,7 @@ impl<const D: usize> Operators<D> {
         }
     }
 
-    /// F = 1 + ∂(x − X)/∂X of every row, with the weights of this fit of the cloud `from` at X.
+    /// Deformation gradient F = 1 + ∂(x − X)/∂X of every row, with the weights of this fit of the cloud `from` at X.
     pub fn displacement_gradients(&self, cloud: &Cloud<D>, from: &Cloud<D>) -> Vec<Matrix<D>> {
         let mut all = vec![[Vector::ZERO; D]; from.n_rows()];
         let moved = |i: usize| cloud.x[i] - from.x[i];
@@ -54,7 +55,7 @@ impl<const D: usize> Operators<D> {
                 }
             }
         });
-        // a row that determines no gradient moves like the first neighbour that does
+        // a row that does not determine a gradient uses that of its first neighbour that does
         let bounded = |i: usize| from.first_order.binary_search(&(i as u32)).is_ok();
         for i in from.first_order.iter().map(|i| *i as usize) {
             let whole = |j: &&u32| (**j as usize) < from.n_rows() && !bounded(**j as usize);
@@ -66,7 +67,7 @@ impl<const D: usize> Operators<D> {
     }
 }
 
-/// F of a particle with a row, or of the image of one.
+/// F of a particle with a row, or of the image of one; `None` for other particles.
 fn seen<const D: usize>(cloud: &Cloud<D>, gradients: &[Matrix<D>], i: usize) -> Option<Matrix<D>> {
     if i < gradients.len() {
         return Some(gradients[i]);

@@ -1,8 +1,10 @@
-//! The cloud: where particles are, which ones each of them sees, and the operators that follow from it.
+//! The cloud: the positions of the particles, their neighbour lists, and the derivative operators that follow from
+//! both.
 //!
-//! Particles come in four kinds, stored one after the other: *fluid* particles in Hilbert order, *interface* particles on
-//! the surfaces, *outer* particles on the sides of the domain, and *ghosts*, images of particles across planes of symmetry and
-//! periodic sides. Only fluid particles evolve; the state of the others follows from theirs.
+//! There are four kinds of particles, stored one kind after the other: *fluid* particles in Hilbert order, *interface*
+//! particles on the surfaces, *outer* particles on the sides of the domain, and *ghosts*, which are images of other
+//! particles across planes of symmetry and periodic sides. Only the fluid particles carry unknowns. The states of the
+//! other kinds follow from the boundary conditions.
 pub mod build;
 mod clouds;
 mod coefficient_unknowns;
@@ -47,27 +49,28 @@ pub use quality::Diagnosis;
 pub use spec::CloudSpec;
 pub use strain::Strain;
 
-/// A particle on a surface.
+/// A particle on a surface: its normal, its area and its curvature.
 #[derive(Clone, Copy, Debug)]
 pub struct Interface<const D: usize> {
     /// Unit normal into the fluid.
     pub normal: Vector<D>,
-    /// Area times normal: these sum to zero over a closed body.
+    /// Area vector: area (length in 2-D) times `normal`. The area vectors of a closed body sum to zero.
     pub area: Vector<D>,
-    /// ∂n/∂x along the surface, zero across it: the curvature tensor, positive for a convex body.
+    /// Curvature tensor ∂n/∂x along the surface [1/length]; it has no component across the surface and is positive for
+    /// a convex body.
     pub curvature: [Vector<D>; D],
-    /// Index of the body.
+    /// Index of the body that the particle lies on.
     pub body: u16,
-    /// Index of the tag (part of a body).
+    /// Index of the tag, which names a part of a body.
     pub tag: u16,
-    /// Number of the smooth piece of surface it belongs to: pieces meet at sharp edges.
+    /// Number of the smooth piece of surface that the particle lies on; pieces are separated by sharp edges.
     pub piece: u32,
-    /// Distance along the outline in 2-D, zero in 3-D.
+    /// Arc length along the outline in 2-D; zero in 3-D.
     pub arc: f64,
 }
 
 impl<const D: usize> Interface<D> {
-    /// Turns its vectors by the rotation with these rows.
+    /// Rotates the normal, the area vector and the curvature tensor by the matrix with these rows.
     pub fn turn(&mut self, rotation: &[Vector<D>; D]) {
         let turned = |v: &Vector<D>| Vector::from_fn(|i| rotation[i].dot(v));
         self.normal = turned(&self.normal);
@@ -78,79 +81,80 @@ impl<const D: usize> Interface<D> {
     }
 }
 
-/// A particle on a side of the domain.
+/// A particle on a side of the domain: its boundary condition and the fluid particles inward of it.
 #[derive(Clone, Copy, Debug)]
 pub struct Outer {
-    /// Condition of the side.
+    /// Boundary condition of the side.
     pub side: Side,
-    /// The nearest fluid particle inward, from which waves come; itself where there is none.
+    /// Index of the nearest fluid particle inward, from which waves arrive; the particle's own index where there is
+    /// none.
     pub source: u32,
-    /// The next one behind it; the same where there is none.
+    /// Index of the next fluid particle inward behind `source`; equal to `source` where there is none.
     pub behind: u32,
-    /// Axis of the outward normal, and whether it points towards larger coordinates.
+    /// Axis of the outward normal, and true when the normal points towards larger coordinates.
     pub outward: (u8, bool),
 }
 
 impl Outer {
-    /// Outward unit normal of the side.
+    /// Outward unit normal of the side of the domain.
     pub fn normal<const D: usize>(&self) -> Vector<D> {
         let (axis, up) = self.outward;
         Vector::axis(usize::from(axis)) * if up { 1.0 } else { -1.0 }
     }
 }
 
-/// A reflection and a shift of space: x' = sign·x + offset.
+/// A reflection of space followed by a translation: x' = sign·x + offset, component by component.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Transform<const D: usize> {
-    /// −1 along mirrored axes, else 1.
+    /// −1 along the mirrored axes and 1 along the others.
     pub sign: Vector<D>,
-    /// Shift after the reflection.
+    /// Translation after the reflection.
     pub offset: Vector<D>,
 }
 
 impl<const D: usize> Transform<D> {
-    /// Image of a point.
+    /// Image of the point `x`.
     pub fn point(&self, x: &Vector<D>) -> Vector<D> {
         Vector::from_fn(|d| self.sign[d] * x[d] + self.offset[d])
     }
 
-    /// Image of a direction.
+    /// Image of the direction `v`, which is reflected but not translated.
     #[inline]
     pub fn direction<S: Scalar>(&self, v: &Vector<D, S>) -> Vector<D, S> {
         Vector::from_fn(|d| v[d] * self.sign[d])
     }
 
-    /// True when this transform undoes another, up to round-off.
+    /// True when this transform is the inverse of `other` up to round-off.
     pub fn undoes(&self, other: &Self) -> bool {
         let back = other.inverse();
         self.sign == back.sign && (self.offset - back.offset).max_abs() <= 1e-9 * back.offset.max_abs()
     }
 
-    /// The transform that undoes this one.
+    /// The inverse transform.
     pub fn inverse(&self) -> Self {
         Self { sign: self.sign, offset: Vector::from_fn(|d| -self.sign[d] * self.offset[d]) }
     }
 }
 
-/// A ghost: the image of a particle.
+/// A ghost particle: the image of another particle under a transform.
 #[derive(Clone, Copy, Debug)]
 pub struct Ghost {
-    /// Particle it is the image of.
+    /// Index of the particle of which this is the image.
     pub source: u32,
-    /// Index of the transform.
+    /// Index of the transform in [`Cloud::transforms`].
     pub transform: u8,
 }
 
-/// Distances to the surface of the particles near it; those of all others are infinite.
+/// Distances to the surface, stored only for the particles near it; the distance of every other particle is infinite.
 #[derive(Clone, Debug, Default)]
 pub struct WallDistance {
-    /// Particles, in ascending order.
+    /// Indices of the particles near the surface, in ascending order.
     near: Vec<u32>,
     distance: Vec<f64>,
 }
 
 impl WallDistance {
-    /// Keeps the finite ones of `all`.
+    /// Stores the finite values of `all`, which holds one distance for each particle.
     pub fn new(all: &[f64]) -> Self {
         let near: Vec<u32> = (0..all.len()).filter(|i| all[*i].is_finite()).map(|i| i as u32).collect();
         let mut distance = vec![0.0; near.len()];
@@ -167,40 +171,41 @@ impl Index<usize> for WallDistance {
     }
 }
 
-/// Particles and what they see.
+/// The particles with their neighbour lists, boundary data and wall layers. Lengths are in the unit of the geometry.
 #[derive(Clone, Debug)]
 pub struct Cloud<const D: usize> {
-    /// Positions.
+    /// Positions of all particles, ghosts included.
     pub x: Vec<Vector<D>>,
-    /// Local spacings.
+    /// Local spacing of each particle.
     pub spacing: Vec<f64>,
-    /// Volume (area in 2-D) that a particle stands for.
+    /// Volume (area in 2-D) that each particle represents.
     pub volume: Vec<f64>,
-    /// Number of fluid particles: the first ones.
+    /// Number of fluid particles; they have the indices `0..n_fluid`.
     pub n_fluid: usize,
-    /// Interface particles, in the order of their indices.
+    /// Data of the interface particles, in the order of their indices.
     pub interface: Vec<Interface<D>>,
-    /// Outer particles, in the order of their indices.
+    /// Data of the outer particles, in the order of their indices.
     pub outer: Vec<Outer>,
-    /// Ghost particles, images of others, in the order of their indices.
+    /// Source and transform of the ghost particles, in the order of their indices.
     pub ghosts: Vec<Ghost>,
-    /// Transforms that ghosts refer to.
+    /// Transforms that the ghosts refer to.
     pub transforms: Vec<Transform<D>>,
-    /// Distance to the surface, for fluid particles near it; infinite elsewhere.
+    /// Distance to the surface, for the fluid particles near it; infinite for all others.
     pub wall_distance: WallDistance,
-    /// Clouds of fluid and interface particles.
+    /// Neighbour lists of the fluid and interface particles.
     pub neighbours: Neighbours,
-    /// Fluid particles from which the state of each interface particle is fitted.
+    /// For each interface particle, the fluid particles from which its state is fitted.
     pub wall_stencils: Neighbours,
-    /// Layers along the walls: a column an interface particle.
+    /// Layers of particles along the walls, with one column for each interface particle.
     pub layers: layers::Layers<D>,
-    /// Which particles sit in which leaf of the background.
+    /// The particles in each leaf of the background tree.
     pub leaves: particles::LeafIndex,
-    /// Particles, in ascending order, whose reconstruction stays first order: too few neighbours around them.
+    /// Indices, in ascending order, of the particles whose reconstruction stays first order because they have too few
+    /// neighbours.
     pub first_order: Vec<u32>,
-    /// The background.
+    /// The background tree, which defines the local spacing.
     pub tree: std::sync::Arc<tree::Tree<D>>,
-    /// What had to be repaired, in words.
+    /// Messages about particles that had to be repaired.
     pub notes: Vec<String>,
 }
 
@@ -210,7 +215,7 @@ impl<const D: usize> Cloud<D> {
         self.x.len()
     }
 
-    /// True when there is no particle.
+    /// True when the cloud has no particle.
     pub fn is_empty(&self) -> bool {
         self.x.is_empty()
     }
@@ -220,7 +225,7 @@ impl<const D: usize> Cloud<D> {
         self.n_fluid..self.n_fluid + self.interface.len()
     }
 
-    /// Outer particle number `k`, its source and what is behind that.
+    /// Indices of the `k`-th outer particle, of its source, and of the fluid particle behind the source.
     pub fn beside(&self, k: usize) -> [usize; 3] {
         [self.n_rows() + k, self.outer[k].source as usize, self.outer[k].behind as usize]
     }
@@ -236,12 +241,12 @@ impl<const D: usize> Cloud<D> {
         self.n_real()..self.len()
     }
 
-    /// Number of particles that have a cloud of their own: fluid and interface.
+    /// Number of particles that have a neighbour list: fluid and interface particles.
     pub fn n_rows(&self) -> usize {
         self.n_fluid + self.interface.len()
     }
 
-    /// The particle that `j` is, or is the image of.
+    /// The particle with index `j`, or, for a ghost, the particle of which `j` is the image.
     pub fn source(&self, j: usize) -> layers::Source {
         match j.checked_sub(self.n_real()).and_then(|k| self.ghosts.get(k)) {
             Some(image) => layers::Source { index: image.source as usize, image: true },
@@ -249,8 +254,8 @@ impl<const D: usize> Cloud<D> {
         }
     }
 
-    /// Offset from particle `i` to `j` in the coordinates in which the row of `i` is fitted: steps along and across the wall
-    /// inside layers, x_j − x_i elsewhere.
+    /// Offset from particle `i` to particle `j` in the coordinates of the least-squares fit of row `i`: numbers of
+    /// steps along and across the wall inside wall layers, x_j − x_i elsewhere.
     pub fn offset(&self, i: usize, j: usize) -> Vector<D> {
         match self.layers.in_steps(i) {
             Some(_) => self.judged_offset(i, j),
@@ -258,37 +263,38 @@ impl<const D: usize> Cloud<D> {
         }
     }
 
-    /// The same as distances are judged, where layers end as well: stretched across the wall like the layers.
+    /// Offset from particle `i` to particle `j` in the coordinates in which the quality of a neighbour list is judged.
+    /// Inside wall layers, and at their ends too, it is stretched across the wall by the aspect ratio of the layers.
     pub fn judged_offset(&self, i: usize, j: usize) -> Vector<D> {
         self.layers.offset(i, self.spacing[i], self.source(j), &(self.x[j] - self.x[i]))
     }
 
-    /// Number of particles without ghosts.
+    /// Number of particles without the ghosts.
     pub fn n_real(&self) -> usize {
         self.n_rows() + self.outer.len()
     }
 }
 
-/// Why a cloud could not be built.
+/// Reason why a cloud could not be built.
 #[derive(Debug, thiserror::Error)]
 pub enum CloudError {
-    /// The domain does not suit the spacing.
+    /// The domain does not match the spacing, or a body does not fit into the domain.
     #[error("{0}")]
     Layout(String),
-    /// More particles than memory holds.
+    /// The cloud would have more particles than the memory can hold.
     #[error("the cloud would have {particles} particles, but only {most} fit into memory\nhint: {hint}")]
     TooLarge {
-        /// About how many, in words.
+        /// Approximate number of particles, as text.
         particles: String,
-        /// Greatest number.
+        /// Greatest number of particles that is allowed.
         most: usize,
-        /// What asks for them.
+        /// The key of the case that asks for most of the particles, and what to change.
         hint: String,
     },
-    /// The doctor found particles that cannot be repaired.
+    /// The quality check found particles that cannot be repaired; one message for each.
     #[error("{} particles have clouds that cannot be repaired; first ones:\n{}\nhint: lower `cloud.spacing` or raise `cloud.radius`", .0.len(), .0.iter().take(5).cloned().collect::<Vec<_>>().join("\n"))]
     Quality(Vec<String>),
-    /// Nothing is left for the fluid.
+    /// The bodies fill the domain, so that no fluid particle is left.
     #[error("no fluid particle is left: the bodies fill the domain\nhint: check `scale` and `cloud.far_field`")]
     Empty,
 }

@@ -1,7 +1,8 @@
-//! Multipliers of the conditions on conservative coefficients, particle by particle.
+//! Lagrange multipliers of the conditions on conservative coefficients.
 //!
-//! They are wanted to a hundredth, and kept in single precision. Those of a particle are an affine field, a value and a slope along each
-//! axis, each with one number a component and room for four: kernels are then plain arithmetic of four numbers at a time.
+//! They are computed to a relative accuracy of one hundredth and stored in single precision. The multipliers of a
+//! particle form an affine field: a value and a slope along each axis, each with one number per component, padded to
+//! four numbers. The kernels are therefore plain arithmetic on four numbers at a time.
 use crate::math::Vector;
 use crate::math::conjugate;
 use crate::math::parallel::sweep_rows;
@@ -9,15 +10,15 @@ use crate::math::rounded::{of_upper_half, upper_half};
 
 /// Smallest pivot of a block relative to its diagonal.
 const FLAT: f64 = 1e-12;
-/// Most conditions of a particle: three dimensions.
-const MOST: usize = 12;
-/// Elements of a lower triangle of that order.
-const MOST_ELEMENTS: usize = MOST * (MOST + 1) / 2;
+/// Greatest number of conditions of a particle, reached in three dimensions.
+const MAX_CONDITIONS: usize = 12;
+/// Number of elements of a lower triangle of that order.
+const MAX_ELEMENTS: usize = MAX_CONDITIONS * (MAX_CONDITIONS + 1) / 2;
 
-/// A number for each component, zeros behind.
+/// One number for each component, followed by zeros.
 pub(super) type Lanes = [f32; 4];
 
-/// a ← a + s b.
+/// Computes a ← a + s b.
 #[inline(always)]
 pub(super) fn add_to(a: &mut Lanes, s: f32, b: &Lanes) {
     for k in 0..4 {
@@ -25,7 +26,7 @@ pub(super) fn add_to(a: &mut Lanes, s: f32, b: &Lanes) {
     }
 }
 
-/// Part of an offset, in single precision.
+/// The offset `d` times `part`, in single precision.
 #[inline(always)]
 pub(super) fn part_of<const D: usize>(d: &Vector<D>, part: f64) -> [f32; D] {
     let mut narrow = [0.0; D];
@@ -35,7 +36,7 @@ pub(super) fn part_of<const D: usize>(d: &Vector<D>, part: f64) -> [f32; D] {
     narrow
 }
 
-/// The opposite offset.
+/// The opposite offset −d.
 #[inline(always)]
 pub(super) fn opposite<const D: usize>(d: &[f32; D]) -> [f32; D] {
     let mut back = [0.0; D];
@@ -45,7 +46,7 @@ pub(super) fn opposite<const D: usize>(d: &[f32; D]) -> [f32; D] {
     back
 }
 
-/// A vector as numbers of components.
+/// The components of a vector, followed by zeros.
 #[inline(always)]
 pub(super) fn lanes<const D: usize>(v: &Vector<D>) -> Lanes {
     let mut all = [0.0; 4];
@@ -55,7 +56,7 @@ pub(super) fn lanes<const D: usize>(v: &Vector<D>) -> Lanes {
     all
 }
 
-/// The products of the numbers of both.
+/// Componentwise product.
 #[inline(always)]
 fn product(a: &Lanes, b: &Lanes) -> Lanes {
     let mut q = [0.0; 4];
@@ -68,9 +69,10 @@ fn product(a: &Lanes, b: &Lanes) -> Lanes {
 /// Multipliers, or defects, of the conditions of one particle.
 #[derive(Clone, Copy)]
 pub(super) struct Row<const D: usize> {
-    /// Of the closure; for an interface particle the first component belongs to the sum of its shares.
+    /// For the closure condition. For an interface particle, the first component belongs to the condition on the sum of
+    /// its shares.
     pub(super) value: Lanes,
-    /// Of linear consistency, along each axis.
+    /// For the condition of linear consistency, along each axis.
     pub(super) slope: [Lanes; D],
 }
 
@@ -100,7 +102,7 @@ impl<const D: usize> conjugate::Row for Row<D> {
 }
 
 impl<const D: usize> Row<D> {
-    /// The field at the offset `d`.
+    /// Value of the affine field at the offset `d`.
     #[inline(always)]
     pub(super) fn at(&self, d: &[f32; D]) -> Lanes {
         let mut sum = self.value;
@@ -110,7 +112,7 @@ impl<const D: usize> Row<D> {
         sum
     }
 
-    /// Adds `weight` times what an area vector contributes that stands at the offset `d`.
+    /// Adds `weight` times the contribution of an area vector located at the offset `d`.
     #[inline(always)]
     pub(super) fn add(&mut self, weight: f32, s: &Lanes, d: &[f32; D]) {
         add_to(&mut self.value, weight, s);
@@ -119,30 +121,30 @@ impl<const D: usize> Row<D> {
         }
     }
 
-    /// The multiplier, or defect, of the sum of shares.
+    /// Multiplier, or defect, of the condition on the sum of shares.
     pub(super) fn share(&self) -> f64 {
         f64::from(self.value[0])
     }
 
-    /// The same with another one.
+    /// This row with another multiplier of the condition on the sum of shares.
     pub(super) fn with_share(mut self, share: f64) -> Self {
         self.value[0] = share as f32;
         self
     }
 
-    /// The sum of the slopes of components along themselves.
+    /// Trace of the slopes.
     pub(super) fn trace(&self) -> f64 {
         (0..D).map(|r| f64::from(self.slope[r][r])).sum()
     }
 
-    /// Adds to all of those slopes.
+    /// Adds `each` to the diagonal of the slopes.
     pub(super) fn add_to_trace(&mut self, each: f64) {
         for r in 0..D {
             self.slope[r][r] += each as f32;
         }
     }
 
-    /// Its slopes times `s`, without value.
+    /// The slopes multiplied by `s`, with the value zero.
     #[inline(always)]
     pub(super) fn slopes(&self, s: f64) -> Self {
         let mut row = <Self as conjugate::Row>::ZERO;
@@ -152,7 +154,7 @@ impl<const D: usize> Row<D> {
         row
     }
 
-    /// The field in a mirror: components and slopes change their signs.
+    /// The mirrored field: components and slopes change their signs.
     #[inline(always)]
     pub(super) fn mirrored(&self, sign: &Vector<D>) -> Self {
         let seen = lanes(sign);
@@ -164,7 +166,7 @@ impl<const D: usize> Row<D> {
     }
 
     #[inline(always)]
-    fn load(x: &[f32; MOST]) -> Self {
+    fn load(x: &[f32; MAX_CONDITIONS]) -> Self {
         let mut row = <Self as conjugate::Row>::ZERO;
         row.value[..D].copy_from_slice(&x[..D]);
         for k in 0..D {
@@ -174,7 +176,7 @@ impl<const D: usize> Row<D> {
     }
 
     #[inline(always)]
-    fn store(&self, x: &mut [f32; MOST]) {
+    fn store(&self, x: &mut [f32; MAX_CONDITIONS]) {
         x[..D].copy_from_slice(&self.value[..D]);
         for k in 0..D {
             x[(k + 1) * D..(k + 2) * D].copy_from_slice(&self.slope[k][..D]);
@@ -182,9 +184,9 @@ impl<const D: usize> Row<D> {
     }
 }
 
-/// Blocks of conditions, one a row, by the inverses of their Cholesky factors: lower triangles row after row. They only precondition,
-/// which any triangle does whose transpose times itself is near the inverse: each number is the upper half of one in single
-/// precision, for a triangle of every particle is the largest array of all.
+/// Inverses of the Cholesky factors of the diagonal blocks, as lower triangles stored row by row. They serve as a
+/// preconditioner only. Any triangle L with Lᵀ L near the inverse is suitable, so that only the upper half of the bits
+/// of single precision is stored; the triangles of all particles are the largest array of the computation.
 #[derive(Default)]
 pub(super) struct Factors<const D: usize> {
     values: Vec<u16>,
@@ -193,18 +195,18 @@ pub(super) struct Factors<const D: usize> {
 impl<const D: usize> Factors<D> {
     /// Number of conditions of a particle.
     const WIDTH: usize = D + D * D;
-    /// Elements of a lower triangle of that order.
+    /// Number of elements of a lower triangle of that order.
     const TRIANGLE: usize = Self::WIDTH * (Self::WIDTH + 1) / 2;
 
-    /// Of the `n` blocks of which the i-th makes `product(i)(y)` of y.
+    /// Factors of `n` blocks, of which `product(i)(y)` is the product of the i-th with y.
     pub(super) fn new<P: Fn(&Row<D>) -> Row<D>>(n: usize, product: impl Fn(usize) -> P + Sync) -> Self {
         let m = Self::WIDTH;
         let mut values = vec![0; n * Self::TRIANGLE];
         sweep_rows(&mut values, Self::TRIANGLE, |i, triangle| {
-            let mut block = [0.0; MOST * MOST];
+            let mut block = [0.0; MAX_CONDITIONS * MAX_CONDITIONS];
             let product = product(i);
             for c in 0..m {
-                let mut column = [0.0; MOST];
+                let mut column = [0.0; MAX_CONDITIONS];
                 column[c] = 1.0;
                 product(&Row::load(&column)).store(&mut column);
                 (0..m).for_each(|r| block[r * m + c] = f64::from(column[r]));
@@ -216,14 +218,14 @@ impl<const D: usize> Factors<D> {
         Self { values }
     }
 
-    /// What block `i` makes `r` of.
+    /// Solution of block `i` for the right-hand side `r`.
     #[inline(always)]
     pub(super) fn solve(&self, i: usize, r: &Row<D>) -> Row<D> {
         let m = Self::WIDTH;
-        let mut l = [0.0; MOST_ELEMENTS];
+        let mut l = [0.0; MAX_ELEMENTS];
         let packed = &self.values[i * Self::TRIANGLE..(i + 1) * Self::TRIANGLE];
         l[..Self::TRIANGLE].iter_mut().zip(packed).for_each(|(l, packed)| *l = of_upper_half(*packed));
-        let (mut x, mut z) = ([0.0; MOST], [0.0; MOST]);
+        let (mut x, mut z) = ([0.0; MAX_CONDITIONS], [0.0; MAX_CONDITIONS]);
         r.store(&mut x);
         for a in 0..m {
             let row = &l[a * (a + 1) / 2..][..=a];
@@ -234,7 +236,8 @@ impl<const D: usize> Factors<D> {
     }
 }
 
-/// The inverse of the Cholesky factor in the lower triangle; directions without stiffness are left alone.
+/// Overwrites the lower triangle with the inverse of its Cholesky factor; directions without stiffness are left
+/// unchanged.
 fn inverse_cholesky(a: &mut [f64], n: usize) {
     for c in 0..n {
         let s: f64 = (0..c).map(|k| a[c * n + k] * a[c * n + k]).sum();
@@ -245,7 +248,7 @@ fn inverse_cholesky(a: &mut [f64], n: usize) {
             a[r * n + c] = (a[r * n + c] - s) * a[c * n + c];
         }
     }
-    // column by column: what is right of it in its row is inverted already
+    // column by column: the columns to the right are already inverted in this row
     for c in (0..n).rev() {
         for r in (c + 1..n).rev() {
             let s: f64 = (c + 1..=r).map(|k| a[r * n + k] * a[k * n + c]).sum();

@@ -1,51 +1,55 @@
-//! The rows of fluid particles next to a wall.
+//! Smoothing of the rows of fluid particles next to a wall.
 //!
-//! A particle of the first row stands for all gas down to the wall, but a regular background puts it anywhere between 0.4 and
-//! 1.4 spacings above. Fluxes between two of them are taken at their height and not in the middle of the face, which reaches
-//! down to the wall. Where flow is curved, ∂u/∂n = −κu, that is an error of first order in the spacing with a source of
-//! entropy ~ h κ u ∂u/∂s beside the wall, of one sign wherever the gas gains speed: the stream carries it along the wall to
-//! the rear stagnation point, and wall pressure there is of first order only.
+//! A particle of the first row represents all gas down to the wall, but a regular background places it anywhere between
+//! 0.4 and 1.4 spacings above the wall. The flux between two such particles is evaluated at their height and not at the
+//! centre of the face, which extends down to the wall. Where the flow is curved, ∂u/∂n = −κu, this is an error of first
+//! order in the spacing. It acts as a source of entropy ~ h κ u ∂u/∂s next to the wall, of the same sign wherever the
+//! gas accelerates. The stream carries the entropy along the wall to the rear stagnation point, so that the wall
+//! pressure there is only first-order accurate.
 //!
-//! So the lowest particle of every column of the background, counted along the axis nearest to the normal, moves along the
-//! normal to the height at which it is the middle of what it stands for: half a spacing times the cosine of the angle
-//! between the axis and the normal, since a column that leans stands on more wall. Those above follow by a falling part of
-//! its move, which leaves them close to the middle of theirs. Particles of two columns stay 0.8 spacings apart along the wall
-//! at least, since an axis leans by 55 degrees at most.
+//! Therefore the lowest particle of every column of the background, counted along the axis nearest to the normal, is
+//! moved along the normal to the centre of the volume that it represents. Its new height is half a spacing times the
+//! cosine of the angle between axis and normal, because an inclined column covers more wall. The particles above follow
+//! by a decreasing fraction of this displacement, which keeps them close to the centres of their volumes. Particles of
+//! different columns stay at least 0.8 spacings apart along the wall, because the axis is inclined by at most 55
+//! degrees.
 //!
-//! On a sphere at Mach 0.3, 25 spacings across, this takes the root mean square error of Cp from 0.014 to 0.006 and its order
-//! from 1.3 to 2.
+//! On a sphere at Mach 0.3 with 25 spacings per diameter, this reduces the root mean square error of Cp from 0.014 to
+//! 0.006 and raises its observed order from 1.3 to 2.
 //!
-//! Limits: three dimensions; where the background changes its size next to a wall, and in crevices, particles stay.
+//! Limits: three dimensions only. Particles are not moved where the background changes its size next to a wall, and in
+//! crevices.
 use super::Transform;
 use super::particles::Particles;
 use crate::geometry::Surface;
 use crate::math::Vector;
 use crate::math::parallel::sweep;
 
-/// Height of the first row in spacings: the middle of a cell that stands upright on the wall.
+/// Height of the first row in spacings: the centre of a cell whose axis is normal to the wall.
 const FIRST: f64 = 0.5;
-/// Smallest height of the first row in spacings: nearer particles spoil the conditioning of their clouds.
-const LEAST: f64 = 0.4;
-/// Part of the move of the first row by which each row follows.
+/// Minimum height of the first row in spacings; nearer particles would spoil the conditioning of their neighbour lists.
+const MIN_HEIGHT: f64 = 0.4;
+/// Fraction of the displacement of the first row by which each row moves.
 const FOLLOW: [f64; 3] = [1.0, 0.5, 0.2];
-/// Lowest particles of a column are nearer to the wall than this, in spacings, unless the column passes by the body.
+/// Height, in spacings, below which the lowest particle of a column must lie; otherwise the column passes beside the
+/// body.
 const LOWEST: f64 = 1.5;
-/// Part of the height after a move, or of `LEAST`, to which another wall may come near.
+/// Fraction of the height after the move, or of the minimum height, within which there must be no other wall.
 const CLEAR: f64 = 0.9;
-/// Equal sizes of leaves, up to round-off.
+/// Relative tolerance within which the sizes of leaves are equal.
 const SAME_SIZE: f64 = 1e-6;
 
-/// Where a particle stands in its column.
+/// Position of a particle in its column.
 struct Place {
-    /// Number of fluid particles below.
+    /// Number of fluid particles below it.
     row: usize,
-    /// The lowest of them, or the particle itself.
+    /// The lowest particle of the column, which may be the particle itself.
     lowest: usize,
     /// Cosine of the angle between the axis of the column and the normal.
     lean: f64,
 }
 
-/// The nearest point of a wall: distance, and the unit vector from there.
+/// The nearest point of a wall, given by its distance and the unit vector from there to the particle.
 struct Foot<const D: usize> {
     distance: f64,
     out: Vector<D>,
@@ -66,7 +70,7 @@ pub(super) fn smooth_near_wall<const D: usize>(
     }
 }
 
-/// Where particle `i` moves to and how far from the wall that is; `None` when it stays.
+/// New position of particle `i` and its distance from the wall; `None` when the particle is not moved.
 fn place<const D: usize>(all: &Particles<D>, walls: &Walls<'_, D>, i: usize) -> Option<(Vector<D>, f64)> {
     let (x, h) = (all.cell_centre(i), all.spacing[i]);
     if !(all.wall_distance[i] < (LOWEST + FOLLOW.len() as f64) * h) {
@@ -78,15 +82,15 @@ fn place<const D: usize>(all: &Particles<D>, walls: &Walls<'_, D>, i: usize) -> 
     if !(height < LOWEST) {
         return None;
     }
-    let shift = ((FIRST * lean).max(LEAST) - height) * FOLLOW[row] * h;
+    let shift = ((FIRST * lean).max(MIN_HEIGHT) - height) * FOLLOW[row] * h;
     let place = x + foot.out * shift;
     let distance = foot.distance + shift;
-    // another wall may stand in the way
+    // another wall may be too near
     let nearest = walls.surface.nearest(&place, distance).map_or(distance, |n| n.distance);
-    (nearest > CLEAR * distance.min(LEAST * h)).then_some((place, distance))
+    (nearest > CLEAR * distance.min(MIN_HEIGHT * h)).then_some((place, distance))
 }
 
-/// The place of particle `i` in its column; `None` far from the wall and where the size of the background changes.
+/// Position of particle `i` in its column; `None` far from the wall and where the size of the background changes.
 fn column<const D: usize>(all: &Particles<D>, i: usize, out: &Vector<D>) -> Option<Place> {
     let h = all.spacing[i];
     let axis = (0..D).fold(0, |a, d| if out[d].abs() > out[a].abs() { d } else { a });
@@ -99,7 +103,7 @@ fn column<const D: usize>(all: &Particles<D>, i: usize, out: &Vector<D>) -> Opti
         }
         match all.in_leaf(leaf.node).find(|k| (*k as usize) < all.n_fluid) {
             None => return Some(Place { row, lowest: at, lean: out[axis].abs() }),
-            // the side of the domain
+            // the side of the domain is reached
             Some(below) if below as usize == at => return None,
             Some(below) => at = below as usize,
         }
@@ -114,7 +118,7 @@ struct Walls<'a, const D: usize> {
 }
 
 impl<const D: usize> Walls<'_, D> {
-    /// The nearest point of all walls, known to be `distance` away.
+    /// The nearest point of all walls, which is known to be `distance` away.
     fn foot(&self, x: &Vector<D>, distance: f64, h: f64) -> Option<Foot<D>> {
         let within = distance + SAME_SIZE * h;
         let from = |point: Vector<D>, distance: f64| Foot { distance, out: (*x - point) * (1.0 / distance) };

@@ -1,10 +1,11 @@
-//! Which particles each particle sees.
+//! Neighbour lists of the particles.
 //!
-//! Away from walls the cloud of a particle is the 3×3 (3×3×3) stencil of the background: the leaves that touch its own.
-//! Pairs that touch across an edge of the cube only are left out in 3-D, which halves the cost at the same accuracy. Near a
-//! wall the cloud is the ball r ≤ ρ (h_i + h_j)/2, with interface particles in it. No pair reaches through a body: a
-//! segment that crosses a surface joins nothing, an interface particle sees only what lies in front of it, and in 2-D it
-//! sees of its own kind just the two neighbours along the outline, none across a sharp edge.
+//! Away from walls, the neighbours of a particle form the 3×3 (3×3×3) stencil of the background: the leaves that touch
+//! its own. In 3-D, pairs that touch along an edge of the cube only are left out, which halves the cost at the same
+//! accuracy. Near a wall, the neighbours lie in the ball r ≤ ρ (h_i + h_j)/2 and include interface particles. No pair
+//! extends through a body: two particles are not neighbours when the segment between them crosses a surface, and an
+//! interface particle has neighbours only in front of it. In 2-D, its neighbours on the surface are the two adjacent
+//! ones along the outline, but none across a sharp edge.
 use std::cell::OnceCell;
 use std::sync::Arc;
 
@@ -15,37 +16,37 @@ use crate::geometry::Surface;
 use crate::math::parallel::{CHUNK, sweep_each, sweep_parts};
 use crate::math::{Bounds, Vector};
 
-/// Pairs with a member nearer than this many spacings to a wall follow the ball rule.
+/// Distance to the wall, in spacings, below which the ball rule applies to the pairs of a particle.
 pub const NEAR: f64 = 3.0;
-/// Sine of the smallest angle between the tangent plane and what an interface particle sees.
+/// Sine of the smallest angle between the tangent plane of an interface particle and the direction to a neighbour.
 const GRAZING: f64 = 0.05;
-/// Interface particles whose normals differ more (cosine) do not see one another.
+/// Interface particles whose normals have a cosine below this value are not neighbours.
 const FACING: f64 = 0.2;
-/// Interface particles step off the surface by this fraction of the spacing before a line of sight is tested.
+/// Distance from the surface, as a fraction of the spacing, at which lines of sight of interface particles start.
 const LIFT: f64 = 1e-3;
-/// Radius of the fit that gives the state of an interface particle, in spacings: two rings of fluid particles.
+/// Radius, in spacings, of the fit for the state of an interface particle; it contains two rows of fluid particles.
 const FIT_REACH: f64 = 3.2;
-/// The same for interface particles in crevices, where that leaves fewer than D + 1.
+/// Radius of this fit where the ordinary radius contains fewer than D + 1 particles (crevices).
 const FIT_REACH_WIDE: f64 = 6.4;
-/// How far, in spacings, an interface particle without any fluid in sight looks for the nearest.
+/// Search radius, in spacings, for the nearest fluid particle of an interface particle that sees none.
 const FIT_REACH_LAST: f64 = 200.0;
-/// Share of the distance to the surface that is surely free.
+/// Fraction of the distance to the surface that is certainly free of surface.
 const FREE: f64 = 0.99;
-/// Slack with which leaves count as touching, in spacings.
+/// Tolerance, in spacings, within which leaves count as touching.
 const TOUCH: f64 = 1e-6;
-/// Height, in spacings, by which a line of sight must pass above all surface around: round-off.
+/// Minimum height, in spacings, of a free line of sight above all surface nearby; it covers round-off.
 const ABOVE: f64 = 1e-9;
-/// A quarter, and more than round-off beyond.
+/// A quarter plus more than round-off.
 const BEYOND: f64 = 0.2500001;
-/// Neighbours for which the list of a chunk has room from the start.
+/// Initial capacity of the list of a chunk, in neighbours per row.
 const ROOM: usize = 20;
 
-/// Rows of neighbours, compressed.
+/// Neighbour lists in compressed-row storage.
 #[derive(Clone, Debug, Default)]
 pub struct Neighbours {
-    /// Start of each row, and the end of the last one.
+    /// Start of each row in `index`, followed by the end of the last row.
     pub first: Arc<Vec<u32>>,
-    /// Particle indices, ascending in each row.
+    /// Particle indices, in ascending order within each row.
     pub index: Arc<Vec<u32>>,
 }
 
@@ -56,13 +57,13 @@ impl Neighbours {
         &self.index[self.range(i)]
     }
 
-    /// Where the neighbours of particle `i` stand.
+    /// Range of the neighbours of particle `i` in `index`.
     #[inline]
     pub fn range(&self, i: usize) -> std::ops::Range<usize> {
         self.first[i] as usize..self.first[i + 1] as usize
     }
 
-    /// Number of rows.
+    /// Number of rows: fluid and interface particles.
     pub fn len(&self) -> usize {
         self.first.len() - 1
     }
@@ -73,17 +74,17 @@ impl Neighbours {
     }
 }
 
-/// A neighbour before images have numbers: particle and transform (`IDENTITY` for itself).
+/// A neighbour before ghosts are numbered: particle and transform (`IDENTITY` for the particle itself).
 pub(super) type Seen = (u32, u8);
 pub(super) const IDENTITY: u8 = u8::MAX;
 
-/// Rows before images have numbers, in chunks of `CHUNK` rows that are filled in parallel.
+/// Neighbour lists before ghosts are numbered, in chunks of `CHUNK` rows that are filled in parallel.
 pub(super) struct Rows {
     chunks: Vec<(Vec<u32>, Vec<Seen>)>,
 }
 
 impl Rows {
-    /// Calls `fill(i, list)` for every row; it appends what row `i` sees.
+    /// Calls `fill(i, list)` for every row, which appends the neighbours of row `i` to `list`.
     pub(super) fn new(n: usize, fill: impl Fn(usize, &mut Vec<Seen>) + Sync) -> Self {
         let mut chunks = vec![(Vec::new(), Vec::new()); n.div_ceil(CHUNK)];
         sweep_each(&mut chunks, |c| {
@@ -97,18 +98,18 @@ impl Rows {
         Self { chunks }
     }
 
-    /// What row `i` sees.
+    /// Neighbours of row `i`.
     pub(super) fn of(&self, i: usize) -> &[Seen] {
         let (first, list) = &self.chunks[i / CHUNK];
         &list[first[i % CHUNK] as usize..first[i % CHUNK + 1] as usize]
     }
 
-    /// Everything seen through a transform.
+    /// All neighbours that are images.
     pub(super) fn ghosts(&self) -> impl Iterator<Item = Seen> + '_ {
         self.chunks.iter().flat_map(|(_, list)| list).filter(|s| s.1 != IDENTITY).copied()
     }
 
-    /// Removes entries (row, what it sees), sorted.
+    /// Removes entries, given as pairs (row, neighbour) in sorted order.
     pub(super) fn remove(&mut self, unwanted: &[(u32, Seen)]) {
         for (c, (first, list)) in self.chunks.iter_mut().enumerate() {
             let below = |row: usize| unwanted.partition_point(|u| (u.0 as usize) < row);
@@ -127,7 +128,8 @@ impl Rows {
         }
     }
 
-    /// Final rows: `number` gives the index of what is seen, `extra` holds sorted entries to join rows.
+    /// Final neighbour lists: `number` gives the particle index of a neighbour, and `extra` holds sorted pairs (row,
+    /// neighbour) that are added.
     pub(super) fn pack(self, extra: &[(u32, Seen)], number: impl Fn(&Seen) -> u32 + Sync) -> Neighbours {
         let joins = |i: usize| {
             &extra[extra.partition_point(|e| (e.0 as usize) < i)..extra.partition_point(|e| e.0 as usize <= i)]
@@ -155,14 +157,14 @@ impl Rows {
     }
 }
 
-/// Whether a line of sight is tested.
+/// Whether the line of sight between two particles is tested, or was tested from the other end.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Sight {
     Tested,
     Granted,
 }
 
-/// A particle that looks around, and what it knows of the surface near it.
+/// A particle whose neighbours are searched, with its cached knowledge of the nearby surface.
 struct Eye<const D: usize> {
     i: usize,
     reach: f64,
@@ -175,7 +177,7 @@ impl<const D: usize> Eye<D> {
     }
 }
 
-/// A plane above all surface within `bounds`: a line of sight above it is free.
+/// A plane such that all surface within `bounds` lies below it: a line of sight above it is free.
 struct Horizon<const D: usize> {
     normal: Vector<D>,
     height: f64,
@@ -188,7 +190,7 @@ impl<const D: usize> Horizon<D> {
     }
 }
 
-/// Search over the particles of a tree.
+/// Neighbour search among the particles of a background tree.
 pub struct Search<'a, const D: usize> {
     particles: &'a Particles<D>,
     surface: Option<&'a Surface<D>>,
@@ -199,7 +201,7 @@ pub struct Search<'a, const D: usize> {
 }
 
 impl<'a, const D: usize> Search<'a, D> {
-    /// Prepares a search; `radius` is the ball of the near-wall rule in spacings.
+    /// Prepares a search; `radius` is the radius ρ of the ball rule in spacings.
     pub fn new(
         particles: &'a Particles<D>,
         surface: Option<&'a Surface<D>>,
@@ -211,8 +213,8 @@ impl<'a, const D: usize> Search<'a, D> {
         Self { particles, surface, transforms, inverse, radius, free: None }
     }
 
-    /// The same among particles that do not sit in the middle of leaves: the ball holds everywhere. `reach` is how far each
-    /// fluid and interface particle has to look.
+    /// Search among particles that are not located at the centres of leaves, so that the ball rule applies everywhere.
+    /// `reach` is the search radius of each fluid and interface particle.
     pub(super) fn free(self, reach: Vec<f64>) -> Self {
         Self { free: Some(reach), ..self }
     }
@@ -229,13 +231,14 @@ impl<'a, const D: usize> Search<'a, D> {
         empty
     }
 
-    /// The particles searched.
+    /// The particles that are searched.
     pub(super) fn particles(&self) -> &Particles<D> {
         self.particles
     }
 
-    /// Entries that are not seen back: lines of sight are tested at one end only, and round-off, or an abrupt change of
-    /// spacing, can decide otherwise at the other. Pairs of the regular background cannot disagree.
+    /// Entries without a counterpart in the other row. Lines of sight are tested from one end only, and round-off or an
+    /// abrupt change of the spacing may decide differently at the other end. Pairs of the regular background always
+    /// agree.
     pub(super) fn unanswered(&self, rows: &Rows) -> Vec<(u32, Seen)> {
         let p = self.particles;
         let n = p.n_rows();
@@ -257,14 +260,14 @@ impl<'a, const D: usize> Search<'a, D> {
         chunks.concat()
     }
 
-    /// The entry that particle `i` is in the row of what it sees, if that has one.
+    /// The entry of particle `i` in the row of its neighbour `s`, if the neighbour has a row.
     pub(super) fn seen_from(&self, i: usize, s: Seen) -> Option<(u32, Seen)> {
         let back = if s.1 == IDENTITY { IDENTITY } else { self.inverse[s.1 as usize] };
         let known = (s.0 as usize) < self.particles.n_rows() && (s.1 == IDENTITY || back != IDENTITY);
         known.then_some((s.0, (i as u32, back)))
     }
 
-    /// What particle `i` sees, but for what lies in layers.
+    /// Adds the neighbours of particle `i`, except those in wall layers.
     pub(super) fn cloud_of(&self, i: usize, list: &mut Vec<Seen>) {
         if self.in_layers(i) {
             return;
@@ -278,7 +281,7 @@ impl<'a, const D: usize> Search<'a, D> {
         });
     }
 
-    /// Everything in sight of particle `i` within `radius` spacings, whatever the leaves.
+    /// All visible particles within `radius` spacings of particle `i`, independent of the leaves.
     pub(super) fn visible_within(&self, i: usize, radius: f64) -> Vec<Seen> {
         let mut list = Vec::new();
         let eye = Eye::new(i, radius * self.particles.spacing[i]);
@@ -291,30 +294,31 @@ impl<'a, const D: usize> Search<'a, D> {
         list
     }
 
-    /// Whether particle `i` has particle `k` in sight within `wider` times the radius of the near-wall rule.
+    /// Whether particle `k` is visible from particle `i` within `wider` times the radius of the ball rule.
     pub(super) fn sees_within_radius(&self, i: usize, k: usize, t: u8, wider: f64) -> bool {
         let radius = wider * self.radius;
         self.sees_in_ball(&Eye::new(i, radius * self.particles.spacing[i]), k, t, radius, Sight::Tested)
     }
 
-    /// Half-width of a cube that holds the leaves of everything within that radius.
+    /// Half-width of a cube that contains the leaves of all particles within that radius.
     pub(super) fn ball(&self, i: usize) -> f64 {
         0.5 * self.radius * 3.0 * self.particles.spacing[i]
     }
 
-    /// Direction `v` turned by transform `t`.
+    /// Direction `v` under transform `t`.
     pub(super) fn direction(&self, v: &Vector<D>, t: u8) -> Vector<D> {
         if t == IDENTITY { *v } else { self.transforms[t as usize].direction(v) }
     }
 
-    /// Offset from particle `i`, at `x`, to what it sees, in the coordinates in which its row is fitted and judged.
+    /// Offset from particle `i`, located at `x`, to its neighbour `s`, in the coordinates of the fit of row `i`.
     pub(super) fn offset(&self, i: usize, x: &Vector<D>, s: Seen) -> Vector<D> {
         let d = self.position(s.0 as usize, s.1) - *x;
         let source = Source { index: s.0 as usize, image: s.1 != IDENTITY };
         self.particles.layers.offset(i, self.particles.spacing[i], source, &d)
     }
 
-    /// Fluid particles in front of the interface particle `i`, in sight; farther ones where there are too few.
+    /// Adds the visible fluid particles in front of interface particle `i`; the radius is enlarged where there are too
+    /// few.
     pub(super) fn fluid_in_front(&self, i: usize, list: &mut Vec<Seen>) {
         let start = list.len();
         for (reach, least) in [(FIT_REACH, D + 1), (FIT_REACH_WIDE, 1)] {
@@ -332,7 +336,7 @@ impl<'a, const D: usize> Search<'a, D> {
         list.extend(self.nearest_fluid(i));
     }
 
-    /// The D fluid particles nearest to an interface particle so deep in a crevice that it has none in sight.
+    /// The D fluid particles nearest to an interface particle that lies so deep in a crevice that it sees none.
     fn nearest_fluid(&self, i: usize) -> Vec<Seen> {
         let mut found = Vec::new();
         let mut reach = FIT_REACH_WIDE;
@@ -345,7 +349,7 @@ impl<'a, const D: usize> Search<'a, D> {
         found.into_iter().take(D).map(|f| f.1).collect()
     }
 
-    /// Calls `f` for every fluid particle within `reach` spacings of particle `i`, with the offset to it.
+    /// Calls `f` with every fluid particle within `reach` spacings of particle `i` and the offset to it.
     fn fluid_within(&self, i: usize, reach: f64, mut f: impl FnMut(Seen, &Vector<D>)) {
         let p = self.particles;
         let radius = reach * p.spacing[i];
@@ -375,13 +379,13 @@ impl<'a, const D: usize> Search<'a, D> {
         0.5 * (self.particles.spacing[i] + self.particles.spacing[k])
     }
 
-    /// Position of particle `k` moved by transform `t`.
+    /// Position of particle `k` under transform `t`.
     pub(super) fn position(&self, k: usize, t: u8) -> Vector<D> {
         let x = self.particles.x[k];
         if t == IDENTITY { x } else { self.transforms[t as usize].point(&x) }
     }
 
-    /// Every particle, or image, whose leaf meets the cube of half-width `reach` around particle `i`.
+    /// Calls `f` for every particle, or image, whose leaf overlaps the cube of half-width `reach` around particle `i`.
     pub(super) fn candidates(&self, i: usize, reach: f64, mut f: impl FnMut(u32, u8)) {
         self.around(&self.particles.cell_centre(i), reach, |k, t| {
             if k as usize != i || t != IDENTITY {
@@ -390,7 +394,7 @@ impl<'a, const D: usize> Search<'a, D> {
         });
     }
 
-    /// The same around any place.
+    /// Calls `f` for every particle, or image, whose leaf overlaps the cube of half-width `reach` around `x`.
     fn around(&self, x: &Vector<D>, reach: f64, mut f: impl FnMut(u32, u8)) {
         let p = self.particles;
         let domain = p.tree.bounds();
@@ -401,14 +405,14 @@ impl<'a, const D: usize> Search<'a, D> {
         visit(x, IDENTITY);
         for (t, transform) in self.transforms.iter().enumerate() {
             let back = transform.inverse().point(x);
-            // the corner of the cube may reach into the domain where its faces do not
+            // the corner of the cube may extend into the domain where its faces do not
             if domain.distance_squared(&back) <= D as f64 * reach * reach {
                 visit(&back, t as u8);
             }
         }
     }
 
-    /// Whether particle `i` has particle `k`, moved by transform `t`, in its cloud.
+    /// Whether particle `k`, moved by transform `t`, is a neighbour of particle `i`.
     fn sees(&self, eye: &Eye<D>, k: usize, t: u8) -> bool {
         let (p, i) = (self.particles, eye.i);
         let wall = p.is_interface(i) || p.is_interface(k);
@@ -417,12 +421,12 @@ impl<'a, const D: usize> Search<'a, D> {
         if !wall && !free && !self.leaves_touch(i, k, t, near) {
             return false;
         }
-        // the end with the smaller index looks whether the way is free
+        // the line of sight is tested from the end with the smaller index
         let test = if i <= k { Sight::Tested } else { Sight::Granted };
         !(near || free) || self.sees_in_ball(eye, k, t, self.radius, test)
     }
 
-    /// False for most pairs beyond the ball, at little cost.
+    /// False for most pairs outside the ball; an inexpensive first test.
     #[inline(always)]
     fn within_ball(&self, i: usize, k: usize) -> bool {
         let p = self.particles;
@@ -430,7 +434,7 @@ impl<'a, const D: usize> Search<'a, D> {
         (p.x[k] - p.x[i]).norm_squared() < BEYOND * self.radius * self.radius * size * size
     }
 
-    /// Whether particle `i` has particle `k` in sight, within `radius` of their mean spacing.
+    /// Whether particle `k` is visible from particle `i` within `radius` times their mean spacing.
     fn sees_in_ball(&self, eye: &Eye<D>, k: usize, t: u8, radius: f64, sight: Sight) -> bool {
         let (p, i) = (self.particles, eye.i);
         let d = self.position(k, t) - p.x[i];
@@ -446,7 +450,7 @@ impl<'a, const D: usize> Search<'a, D> {
         }
     }
 
-    /// Leaves touch; contacts along an edge of the cube count only near a wall.
+    /// Whether the leaves of two particles touch; contacts along an edge of the cube count only near a wall.
     fn leaves_touch(&self, i: usize, k: usize, t: u8, near: bool) -> bool {
         let p = self.particles;
         let mut other = p.cell_centre(k);
@@ -468,7 +472,8 @@ impl<'a, const D: usize> Search<'a, D> {
         d.dot(&normal) > GRAZING * d.norm()
     }
 
-    /// In 2-D neighbours along the outline, or a particle and its own image beyond a plane of symmetry that cuts the outline.
+    /// 2-D: true for neighbours along the outline, and for a particle and its own image at a plane of symmetry that
+    /// cuts the outline.
     fn walls_see(&self, i: usize, k: usize, t: u8) -> bool {
         let p = self.particles;
         if D == 2 && (if t == IDENTITY { !p.adjacent(i, k) } else { i != k }) {
@@ -481,7 +486,7 @@ impl<'a, const D: usize> Search<'a, D> {
         a.normal.dot(&self.direction(&b.normal, t)) > FACING
     }
 
-    /// No surface between a particle and particle `k` moved by `t`, at `d` from it.
+    /// True when no surface lies between the particle of `eye` and particle `k` moved by `t`, at the offset `d`.
     fn in_sight(&self, eye: &Eye<D>, k: usize, t: u8, d: &Vector<D>) -> bool {
         let (p, i) = (self.particles, eye.i);
         if self.surface.is_none() || p.wall_distance[i] + p.wall_distance[k] > d.norm() {
@@ -492,19 +497,19 @@ impl<'a, const D: usize> Search<'a, D> {
             false => Vector::ZERO,
         };
         let (a, b) = (p.x[i] + lifted(i), p.x[i] + *d + self.direction(&lifted(k), t));
-        // balls around both ends are free of surface: only what they do not cover is tested
+        // balls around both ends contain no surface: only the segment between them is tested
         let way = (b - a) * (FREE / d.norm());
         let (a, b) = (a + way * p.wall_distance[i], b - way * p.wall_distance[k]);
         if t == IDENTITY {
             let horizon = eye.horizon.get_or_init(|| self.horizon(eye));
             return horizon.as_ref().is_some_and(|h| h.is_above(&a) && h.is_above(&b)) || !self.blocked(&a, &b);
         }
-        // the part of the way beyond the side of the domain may be blocked by the image of a body
+        // the part of the segment beyond the side of the domain may be blocked by the image of a body
         let back = self.transforms[t as usize].inverse();
         !self.blocked(&a, &b) && !self.blocked(&back.point(&a), &back.point(&b))
     }
 
-    /// The plane above the surface around a particle: most lines of sight need no other test.
+    /// The plane above the surface around a particle; most lines of sight need no other test.
     fn horizon(&self, eye: &Eye<D>) -> Option<Horizon<D>> {
         let (p, surface) = (self.particles, self.surface?);
         let x = p.x[eye.i];

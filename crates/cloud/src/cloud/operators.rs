@@ -1,12 +1,13 @@
 //! Derivative weights and the edges of the cloud.
 //!
-//! ∇f_i = Σ_j a_ij (f_j − f_i) by a linear least-squares fit with weights 1/r² (eqs (10)-(15)). The scheme works on *edges*:
-//! pairs of particles that see one another, each with the antisymmetric vector s_ij = V_i a_ij − V_j a_ji that weights the upwind
-//! dissipation; a_ij and a_ji follow from one small matrix a row. On a uniform lattice s_ij = 2 V a_ij and everything reduces to
-//! one set of coefficients.
+//! ∇f_i = Σ_j a_ij (f_j − f_i) by a linear least-squares fit with the weights 1/r² (eqs (10)-(15)). The scheme loops
+//! over *edges*: pairs of neighbouring particles, each with the antisymmetric area vector s_ij = V_i a_ij − V_j a_ji
+//! that weights the upwind dissipation. The derivative weights a_ij and a_ji follow from one small matrix per row. On a
+//! uniform lattice, s_ij = 2 V a_ij, and a single set of coefficients remains.
 //!
-//! Rows are cut into contiguous *parts*; an edge inside a part is visited once and serves both ends, an edge between parts
-//! is stored with both. Every part writes only its own rows, so results do not depend on the number of threads.
+//! The rows are divided into contiguous *parts*. An edge inside a part is visited once and contributes to both ends; an
+//! edge between two parts is stored in both. Every part writes its own rows only, so that results do not depend on the
+//! number of threads.
 use std::ops::Range;
 
 use super::neighbours::Neighbours;
@@ -16,74 +17,76 @@ use crate::math::least_squares::{bounded_inverse, gradient_weight, normal_invers
 use crate::math::parallel::{parts, sweep, sweep_each, sweep_each_slot, sweep_parts, sweep_two_parts};
 use crate::math::square::{Symmetric, cofactors, determinant};
 
-/// Fewest and most rows in one part, in 2-D and in 3-D: large enough that few edges are visited twice (of 4,096 rows in 3-D
-/// a quarter of the edges are), small enough to stay in the second cache and to balance threads.
+/// Minimum and maximum number of rows of a part, in 2-D and in 3-D: large enough that few edges are visited twice (with
+/// 4,096 rows in 3-D, a quarter of the edges), small enough to fit into the second-level cache and to balance threads.
 const PART: [[usize; 2]; 2] = [[1024, 8192], [4096, 16384]];
-/// Parts that a large cloud has at least.
+/// Minimum number of parts of a large cloud.
 const MANY_PARTS: usize = 32;
-/// Marks an edge whose second end lies in the same part.
+/// Flag of an edge whose second end lies in the same part.
 const BOTH: u32 = 1 << 31;
-/// Marks an edge whose second end is a particle, not an image, that sees the first.
+/// Flag of an edge whose second end is a particle, not an image, and has the first end as a neighbour.
 const SEEN_BACK: u32 = 1 << 30;
 
-/// Two particles that see one another.
+/// A pair of neighbouring particles with its area vector.
 #[derive(Clone, Copy, Debug)]
 #[repr(C)]
 pub struct Edge<const D: usize> {
     i: u32,
     j: u32,
-    /// V_i a_ij − V_j a_ji.
+    /// Area vector s_ij = V_i a_ij − V_j a_ji [length^(D−1)].
     pub s: Vector<D>,
 }
 
 impl<const D: usize> Edge<D> {
-    /// The edge from `i` to `j` that serves both, with its area vector.
+    /// The edge from `i` to `j` with the area vector `s`, whose visit contributes to both ends.
     pub fn of_both(i: u32, j: u32, s: Vector<D>) -> Self {
         Self { i, j: j | BOTH, s }
     }
 
-    /// First end.
+    /// Index of the first end.
     #[inline(always)]
     pub fn i(&self) -> usize {
         self.i as usize
     }
 
-    /// Second end.
+    /// Index of the second end.
     #[inline(always)]
     pub fn j(&self) -> usize {
         (self.j & !(BOTH | SEEN_BACK)) as usize
     }
 
-    /// True where the second end is a particle, not an image, that sees the first.
+    /// True when the second end is a particle, not an image, and has the first end as a neighbour.
     #[inline(always)]
     pub fn seen_back(&self) -> bool {
         self.j & SEEN_BACK != 0
     }
 
-    /// True when this visit serves the second end as well.
+    /// True when a visit of this edge contributes to the second end as well.
     #[inline(always)]
     pub fn both(&self) -> bool {
         self.j & BOTH != 0
     }
 }
 
-/// Weights a_ij and a_ji of the derivatives at both ends of the edges of a part; that of an end that has no cloud, or is not served
-/// by the visit, is zero.
+/// Derivative weights a_ij and a_ji at both ends of the edges of a part [1/length]. The weight is zero at an end that
+/// has no neighbour list or to which the visit does not contribute.
 #[derive(Clone, Copy)]
 pub struct Weights<'a, const D: usize> {
-    /// Of each row the matrix that makes a weight of an offset over its square, where offsets are plain differences.
+    /// For each row, the matrix that maps an offset divided by its square to a weight, where offsets are plain
+    /// differences.
     inverse: &'a [Symmetric<D>],
-    /// Of each edge, where they are not.
+    /// For each edge, the stored weights of both ends, where offsets are not plain differences (wall layers).
     stored: &'a [[Vector<D>; 2]],
 }
 
 impl<'a, const D: usize> Weights<'a, D> {
-    /// Those of edges in the order in which they come.
+    /// Weights given for each edge, in the order of the edges.
     pub fn stored(stored: &'a [[Vector<D>; 2]]) -> Self {
         Self { inverse: &[], stored }
     }
 
-    /// Of the `n`-th edge of the part, which goes along `d`.
+    /// Weights at both ends of the `n`-th edge `e` of the part, where `d` is the offset from its first to its second
+    /// end.
     #[inline(always)]
     pub fn of(&self, n: usize, e: &Edge<D>, d: &Vector<D>) -> [Vector<D>; 2] {
         if let Some(pair) = self.stored.get(n) {
@@ -98,37 +101,37 @@ impl<'a, const D: usize> Weights<'a, D> {
 /// Edges and derivative weights of a cloud.
 #[derive(Clone, Debug)]
 pub struct Operators<const D: usize> {
-    /// Rows of each part; fluid parts first, then interface parts.
+    /// Rows of each part; the parts of fluid particles come first, then those of interface particles.
     pub parts: Vec<Range<usize>>,
-    /// Number of parts that hold fluid particles.
+    /// Number of parts of fluid particles.
     pub n_fluid_parts: usize,
     /// Edges of each part.
     edges: Vec<Vec<Edge<D>>>,
-    /// Of each row the matrix that makes weights; empty where there are layers.
+    /// Inverse normal matrix of each row, from which weights follow; empty where there are layers.
     inverse: Vec<Symmetric<D>>,
-    /// Weights of each edge of each part; empty where there are no layers.
+    /// Weights at both ends of each edge, for each part; empty where there are no layers.
     stored: Vec<Vec<[Vector<D>; 2]>>,
-    /// Condition number of the normal matrix of each row, infinite where the cloud determines no gradient.
+    /// Condition number of the normal matrix of each row; infinite where the neighbours do not determine a gradient.
     pub condition: Vec<f32>,
-    /// True when what one particle loses another gains.
+    /// True when the area vectors are exactly conservative (module `conservative`).
     pub conservative: bool,
     walls: Vec<WallFace<D>>,
     wall_first: Vec<u32>,
 }
 
-/// A piece of wall that bounds the volume of one fluid particle; only conservative coefficients need it.
+/// A piece of wall that bounds the volume of one fluid particle; used by conservative coefficients only.
 #[derive(Clone, Copy, Debug)]
 pub struct WallFace<const D: usize> {
-    /// Fluid particle.
+    /// Index of the fluid particle.
     pub i: u32,
-    /// Interface particle, or image of one, whose pressure acts on it.
+    /// Index of the interface particle, or of an image of one, whose pressure acts on the fluid particle.
     pub wall: u32,
-    /// Area vector, out of the fluid.
+    /// Area vector, directed out of the fluid [length^(D−1)].
     pub area: Vector<D>,
 }
 
 impl<const D: usize> Operators<D> {
-    /// Fits all rows of a cloud.
+    /// Computes the edges and the weights of all rows of a cloud.
     pub fn new(cloud: &Cloud<D>) -> Self {
         let lookup = Reverse::new(cloud);
         let [fewest, most] = PART[usize::from(D == 3)];
@@ -155,8 +158,8 @@ impl<const D: usize> Operators<D> {
         operators
     }
 
-    /// Fits the weights anew to the positions of `cloud`, whose lists are those of the fit before; volumes stay. The
-    /// coefficients that come out are not conservative unless they are carried along, see [`Operators::metric_update`].
+    /// Recomputes the weights for new positions of the particles of `cloud`, with the same neighbour lists and volumes.
+    /// The coefficients are then no longer conservative unless [`Operators::metric_update`] follows.
     pub fn refit(&mut self, cloud: &Cloud<D>) {
         self.conservative = false;
         self.walls.clear();
@@ -189,8 +192,8 @@ impl<const D: usize> Operators<D> {
         });
     }
 
-    /// Finds the inverse normal matrices, from which every weight follows, where offsets are plain differences: those of the two ends
-    /// of an edge are opposite, and add the same to both.
+    /// Computes the inverse normal matrices where offsets are plain differences. The offsets at the two ends of an edge
+    /// are opposite and contribute equally to both matrices, so that a loop over edges suffices.
     fn fit_by_edges(&mut self, cloud: &Cloud<D>) {
         let n = cloud.neighbours.len();
         self.inverse.resize(n, Symmetric::ZERO);
@@ -216,7 +219,7 @@ impl<const D: usize> Operators<D> {
         });
     }
 
-    /// The same on any cloud, row by row.
+    /// Computes the inverse normal matrices of any cloud, row by row.
     fn fit_by_rows(&mut self, cloud: &Cloud<D>) -> Vec<[[f64; D]; D]> {
         let mut rows = vec![([[0.0; D]; D], 0.0f32); cloud.neighbours.len()];
         sweep(&mut rows, |i| fit_row(cloud, i));
@@ -225,7 +228,8 @@ impl<const D: usize> Operators<D> {
         inverse
     }
 
-    /// Gradient of a field at every fluid and interface particle from its `values` at all particles: exact where it is linear.
+    /// Gradient at every fluid and interface particle of a field given by its `values` at all particles; exact for
+    /// linear fields.
     pub fn gradient(&self, cloud: &Cloud<D>, values: &[f64]) -> Vec<Vector<D>> {
         let mut gradient = vec![Vector::ZERO; self.parts.last().map_or(0, |p| p.end)];
         sweep_parts(&self.parts, 1, &mut gradient, &|k, out| {
@@ -241,13 +245,14 @@ impl<const D: usize> Operators<D> {
         gradient
     }
 
-    /// Weights of the derivatives at both ends of the edges of part `k`.
+    /// Derivative weights at both ends of the edges of part `k`.
     #[inline]
     pub fn weights(&self, k: usize) -> Weights<'_, D> {
         Weights { inverse: &self.inverse, stored: self.stored.get(k).map_or(&[], Vec::as_slice) }
     }
 
-    /// Edges of part `k` with the weights of the derivatives at both ends; `cloud` is the one that the weights were fitted to.
+    /// Edges of part `k` with the derivative weights at both ends. `cloud` must be the cloud to which the weights were
+    /// fitted.
     #[inline]
     pub fn weighed_edges<'a>(
         &'a self,
@@ -258,13 +263,14 @@ impl<const D: usize> Operators<D> {
         self.edges(k).iter().enumerate().map(move |(n, e)| (e, weights.of(n, e, &(cloud.x[e.j()] - cloud.x[e.i()]))))
     }
 
-    /// Of each row the matrix that makes the gradient of Σ (d/d²)(f_j − f_i); nothing where there are layers.
+    /// For each row, the matrix that maps Σ (d/d²)(f_j − f_i) to the gradient; empty where there are layers.
     #[inline]
     pub fn inverse(&self) -> &[Symmetric<D>] {
         &self.inverse
     }
 
-    /// Area vectors s of all edges: those of `origin`, on the same lists, after `f(i, j, s)`.
+    /// Sets the area vectors of all edges to `f(i, j, s)`, where s is the area vector in `origin`, which has the same
+    /// edges.
     pub(super) fn carry_edges(&mut self, origin: &Self, f: impl Fn(usize, usize, &Vector<D>) -> Vector<D> + Sync) {
         let before = &origin.edges;
         sweep_each_slot(&mut self.edges, |k, edges| {
@@ -272,7 +278,7 @@ impl<const D: usize> Operators<D> {
         });
     }
 
-    /// Replaces the area vectors of the edges of fluid particles by `f(i, j, s)`.
+    /// Replaces the area vector s of each edge of fluid particles by `f(i, j, s)`.
     pub(super) fn alter_areas(&mut self, f: impl Fn(usize, usize, &Vector<D>) -> Vector<D> + Sync) {
         sweep_each_slot(&mut self.edges[..self.n_fluid_parts], |_, edges| {
             edges.iter_mut().for_each(|e| e.s = f(e.i(), e.j(), &e.s));
@@ -285,18 +291,18 @@ impl<const D: usize> Operators<D> {
         &self.edges[k]
     }
 
-    /// Parts of fluid particles.
+    /// Rows of the parts of fluid particles.
     pub fn fluid_parts(&self) -> &[Range<usize>] {
         &self.parts[..self.n_fluid_parts]
     }
 
-    /// Pieces of wall of fluid part `k`; none unless the coefficients are conservative.
+    /// Wall faces of the particles of fluid part `k`; none unless the coefficients are conservative.
     #[inline]
     pub fn wall_faces(&self, k: usize) -> &[WallFace<D>] {
         &self.walls[self.wall_first[k] as usize..self.wall_first[k + 1] as usize]
     }
 
-    /// Replaces the pieces of wall, sorted by fluid particle, of coefficients that are conservative from now on.
+    /// Sets the wall faces, sorted by fluid particle, and marks the coefficients as conservative.
     pub(super) fn set_wall_faces(&mut self, walls: Vec<WallFace<D>>) {
         self.conservative = true;
         let before = |i: usize| walls.partition_point(|f| (f.i as usize) < i) as u32;
@@ -305,7 +311,7 @@ impl<const D: usize> Operators<D> {
         self.walls = walls;
     }
 
-    /// Bytes held.
+    /// Memory of the operators in bytes.
     pub fn bytes(&self) -> usize {
         let edges: usize = self.edges.iter().map(Vec::len).sum();
         let weights =
@@ -314,10 +320,11 @@ impl<const D: usize> Operators<D> {
     }
 }
 
-/// Volume of the metric terms over that of the straight axes of the column, below which layers are folded.
+/// Ratio of the volume by the metric terms to the volume by the straight axes of the column, below which layers count
+/// as folded.
 const FOLDED: f64 = 0.05;
 
-/// Inverse normal matrix and conditioning of row `i`.
+/// Inverse normal matrix and condition number of row `i`.
 fn fit_row<const D: usize>(cloud: &Cloud<D>, i: usize) -> ([[f64; D]; D], f32) {
     let (matrix, count) = normal_matrix(cloud.neighbours.of(i).iter().map(|j| cloud.offset(i, *j as usize)));
     let (inverse, condition, exact) = invert_row(cloud, i, &matrix, count);
@@ -327,8 +334,9 @@ fn fit_row<const D: usize>(cloud: &Cloud<D>, i: usize) -> ([[f64; D]; D], f32) {
     }
 }
 
-/// The inverse of the normal matrix of `count` neighbours, its condition number, infinite where the cloud determines no gradient,
-/// and whether it is exact for linear fields; the weights of a first-order row are bounded whatever the neighbours.
+/// Inverse of the normal matrix of `count` neighbours, its condition number (infinite where they do not determine a
+/// gradient), and whether the fit is exact for linear fields. The weights of a first-order row are bounded for any
+/// neighbours.
 fn invert_row<const D: usize>(
     cloud: &Cloud<D>,
     i: usize,
@@ -341,9 +349,9 @@ fn invert_row<const D: usize>(
     (inverse.unwrap_or_else(|| bounded_inverse(matrix, count)), condition.unwrap_or(f64::INFINITY), exact)
 }
 
-/// Turns slopes in the space of steps into slopes in space, through the metric terms that the same weights give. Weights of
-/// a first-order row determine no such terms, and those of layers that fold are of no use: there the straight axes of the
-/// column take their place, which keeps weights bounded.
+/// Converts slopes in the space of steps into slopes in physical space, with the metric terms computed by the same
+/// weights. First-order rows do not determine metric terms, and those of folded layers are invalid: the straight axes
+/// of the column replace them there, which keeps the weights bounded.
 fn through_metric<const D: usize>(
     (cloud, (column, layer)): (&Cloud<D>, (usize, usize)),
     i: usize,
@@ -361,11 +369,11 @@ fn through_metric<const D: usize>(
     let upright = determinant(&metric) / determinant(&straight) > FOLDED;
     let rows = if exact && upright { metric } else { straight };
     let (cofactors, det) = (cofactors(&rows), determinant(&rows));
-    // J⁻¹ is the transpose of the cofactors over the determinant
+    // J⁻¹ is the transpose of the cofactors divided by the determinant
     std::array::from_fn(|r| std::array::from_fn(|c| (0..D).map(|k| cofactors[k][r] * inverse[k][c]).sum::<f64>() / det))
 }
 
-/// Finds the entry (j, i) that belongs to the entry (i, j), through images where needed.
+/// Finds the entry (j, i) that corresponds to the entry (i, j) of the neighbour lists, through images where necessary.
 pub(super) struct Reverse<'a, const D: usize> {
     cloud: &'a Cloud<D>,
     inverse: Vec<Option<u8>>,
@@ -378,8 +386,8 @@ impl<'a, const D: usize> Reverse<'a, D> {
         Self { cloud, inverse: cloud.transforms.iter().map(find).collect() }
     }
 
-    /// Position of that entry among all neighbour entries, and the transform that brings its vectors to the first end;
-    /// `None` when the second end has no cloud or does not see the first.
+    /// Position of the entry (j, i) among all neighbour entries, and the transform that maps its vectors to the first
+    /// end; `None` when the second end has no neighbour list or does not have the first as a neighbour.
     pub(super) fn position(&self, i: usize, j: usize) -> Option<(usize, Option<u8>)> {
         let c = self.cloud;
         if j < c.n_rows() {
@@ -402,7 +410,7 @@ impl<'a, const D: usize> Reverse<'a, D> {
 
 /// Edges of a part, without weights.
 fn part_edges<const D: usize>(cloud: &Cloud<D>, reverse: &Reverse<'_, D>, part: &Range<usize>) -> Vec<Edge<D>> {
-    // an edge inside the part belongs to its smaller end
+    // an edge inside the part is stored with its smaller end
     let visited = |i: usize, j: u32| !(part.start..i).contains(&(j as usize));
     let count = |i: usize| cloud.neighbours.of(i).iter().filter(|j| visited(i, **j)).count();
     let mut edges = Vec::with_capacity(part.clone().map(count).sum());
@@ -423,13 +431,13 @@ impl<const D: usize> Edge<D> {
         Self { i: i as u32, j: j as u32 | both | seen, s: Vector::ZERO }
     }
 
-    /// Sets the area vector between particles that are no images, given the inverse normal matrices of all rows.
+    /// Sets the area vector between particles that are not images, from the inverse normal matrices of all rows.
     #[inline(always)]
     fn weigh(&mut self, cloud: &Cloud<D>, inverse: &[Symmetric<D>]) {
         let (i, j) = (self.i(), self.j());
         let d = cloud.x[j] - cloud.x[i];
         let a_i = gradient_weight(&inverse[i].full(), &d);
-        // an end without a cloud counts as the mirror image of this one
+        // an end without a neighbour list is treated as the mirror image of the first end
         self.s = match self.seen_back() {
             true => a_i * cloud.volume[i] - gradient_weight(&inverse[j].full(), &-d) * cloud.volume[j],
             false => a_i * (2.0 * cloud.volume[i]),
@@ -453,7 +461,7 @@ fn weights<const D: usize>(
             cloud.transforms[t as usize].direction(&gradient_weight(&inverse(source), &d))
         }
     });
-    // an end without a cloud counts as the mirror image of this one
+    // an end without a neighbour list is treated as the mirror image of the first end
     let s = match back {
         Some(a_j) => a_i * cloud.volume[i] - a_j * cloud.volume[j],
         None => a_i * (2.0 * cloud.volume[i]),
@@ -461,7 +469,7 @@ fn weights<const D: usize>(
     ([a_i, back.unwrap_or(Vector::ZERO)], s)
 }
 
-/// Rows whose neighbours are not all fluid particles in the interior: none of their entries is missing.
+/// True when neighbourhood is mutual: each neighbour with a row of its own has the particle as a neighbour too.
 pub fn is_symmetric(neighbours: &Neighbours, n_rows: usize) -> bool {
     (0..n_rows).all(|i| {
         neighbours

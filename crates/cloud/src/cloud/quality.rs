@@ -1,11 +1,11 @@
-//! The cloud doctor: is this cloud fit for a flow?
+//! Quality check of a cloud: can a flow be computed on it?
 //!
-//! For every fluid and interface particle it looks at what its gradient rests on, the offsets d to its neighbours: their
-//! number, the condition number of M = Σ d dᵀ/|d|², how far they lie to one side, |Σ d/|d|²| / Σ 1/|d|, the sectors of space
-//! (quadrants, octants; in front of walls halves, quarters) that hold none, and the nearest one. For the surface it looks at
-//! the angle between neighbouring normals, at the closure of the area vectors, Σ S = 0 for a whole body, and at gaps with so
-//! few spacings between facing walls that no flow can form in them. It changes nothing: `repair` does, while a cloud is
-//! built.
+//! The gradient of every fluid and interface particle rests on the offsets d to its neighbours. The measures are the
+//! number of neighbours, the condition number of M = Σ d dᵀ/|d|², the one-sidedness |Σ d/|d|²| / Σ 1/|d|, the number of
+//! sectors of space (quadrants or octants; half as many in front of walls) without a neighbour, and the distance to the
+//! nearest neighbour. For the surface, the measures are the angle between neighbouring normals, the closure of the area
+//! vectors (Σ S = 0 for a closed body), and gaps between facing walls with so few spacings that no flow can develop in
+//! them. The check changes nothing; the module `repair` changes neighbour lists while a cloud is built.
 use serde::Serialize;
 
 use super::Cloud;
@@ -15,68 +15,70 @@ use super::repair::Sums;
 use crate::math::Vector;
 use crate::math::parallel::{CHUNK, sweep_each};
 
-/// Places listed for each measure.
+/// Number of places listed for each measure.
 const WORST: usize = 5;
-/// Gaps with fewer spacings of fluid between facing walls are noted.
+/// Gaps with fewer spacings between facing walls are reported.
 const THIN_GAP: f64 = 4.0;
-/// Walls face each other when the cosine between their normals is below this.
+/// Walls face each other when the cosine between their normals is below this value.
 const FACING: f64 = -0.5;
-/// A neighbour this far, in parts of its distance, beyond the border of a sector still counts for it.
+/// Distance beyond the border of a sector, as a fraction of the distance to the neighbour, up to which the neighbour
+/// counts for it.
 const BORDER: f64 = 0.05;
-/// Relative closure defect of area vectors above which a body is noted as open; sampling is exact to round-off.
+/// Relative closure defect of the area vectors above which a body is reported as open; the sampling is exact up to
+/// round-off.
 const OPEN: f64 = 1e-6;
-/// Fluid particles this many spacings or more from walls must be surrounded.
+/// Distance from walls, in spacings, from which fluid particles must be surrounded by neighbours on all sides.
 const AWAY: f64 = 3.0;
 
-/// What the doctor found.
+/// Result of the quality check.
 #[derive(Clone, Debug, Serialize)]
 pub struct Diagnosis {
-    /// Number of particles without images.
+    /// Number of particles without the ghosts.
     pub particles: usize,
-    /// Number of interface particles among them.
+    /// Number of interface particles.
     pub interface: usize,
-    /// Neighbours of fluid and interface particles.
+    /// Number of neighbours of the fluid and interface particles.
     pub neighbours: Spread,
-    /// How the measures are distributed.
+    /// Distribution of each measure.
     pub histograms: Vec<Histogram>,
-    /// The worst places of each measure.
+    /// The worst particles for each measure.
     pub worst: Vec<Finding>,
-    /// What was repaired when the cloud was built.
+    /// Messages about repairs made when the cloud was built.
     pub repairs: Vec<String>,
-    /// What else is worth knowing.
+    /// Other warnings, for example about thin gaps and open bodies.
     pub notes: Vec<String>,
 }
 
-/// Extremes and mean.
+/// Minimum, mean and maximum of a quantity.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Spread {
-    /// Smallest.
+    /// Minimum.
     pub min: f64,
     /// Mean.
     pub mean: f64,
-    /// Largest.
+    /// Maximum.
     pub max: f64,
 }
 
-/// Counts between edges; values outside count in the first or last bin.
+/// Histogram of a measure. Values outside the range count in the first or the last bin.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Histogram {
-    /// What is counted.
+    /// Name of the measure.
     pub name: String,
-    /// Unit, empty for plain numbers.
+    /// Unit of the measure; empty for a dimensionless one.
     pub unit: String,
-    /// Borders of the bins: one more than bins.
+    /// Borders of the bins, one more than there are bins.
     pub edges: Vec<f64>,
-    /// Particles in each bin.
+    /// Number of particles in each bin.
     pub counts: Vec<usize>,
 }
 
-/// A place that stands out.
+/// A particle with one of the worst values of a measure.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Finding {
     /// Index of the particle.
     pub particle: usize,
-    /// Its place.
+    /// Position of the particle, in the unit of the geometry.
     pub x: Vec<f64>,
     /// Name of the measure.
     pub measure: String,
@@ -84,7 +86,7 @@ pub struct Finding {
     pub value: f64,
 }
 
-/// One measure: name, unit, borders of the bins, and whether small values are the bad ones.
+/// A measure: name, unit, borders of the bins, and whether small values are bad.
 struct Measure {
     name: &'static str,
     unit: &'static str,
@@ -134,7 +136,7 @@ const MEASURES: [Measure; 7] = [
 const ANGLE: usize = 5;
 const GAP: usize = 6;
 
-/// Counts of one chunk of particles, or of all.
+/// Histogram counts and worst values of one chunk of particles, or of all.
 #[derive(Clone, Default)]
 struct Tally {
     counts: [Vec<usize>; MEASURES.len()],
@@ -151,13 +153,13 @@ impl Tally {
         }
     }
 
-    /// Counts `value` of measure `m` at particle `i`.
+    /// Counts the value of measure `m` at particle `i`.
     fn add(&mut self, m: usize, i: usize, value: f64) {
         let edges = MEASURES[m].edges;
         let bin = edges.partition_point(|e| *e <= value).clamp(1, edges.len() - 1) - 1;
         self.counts[m][bin] += 1;
         let badness = if MEASURES[m].small_is_bad { -value } else { value };
-        // nothing stands out where nothing is missing
+        // a measure that is perfect everywhere has no worst place
         if badness == 0.0 && !MEASURES[m].small_is_bad {
             return;
         }
@@ -183,7 +185,7 @@ impl Tally {
 }
 
 impl Diagnosis {
-    /// Examines a cloud; `linear_walls` is the number of wall fits that fell back to a linear one.
+    /// Examines a cloud. `linear_walls` is the number of wall fits that had to be linear instead of quadratic.
     pub fn of<const D: usize>(cloud: &Cloud<D>, linear_walls: usize) -> Self {
         let n = cloud.n_rows();
         let walls = WallGrid::new(cloud);
@@ -230,14 +232,14 @@ fn findings<const D: usize>(cloud: &Cloud<D>, tally: &Tally) -> Vec<Finding> {
             particle: *i,
             x: cloud.x[*i].0.to_vec(),
             measure: MEASURES[m].name.into(),
-            // a JSON number must be finite
+            // JSON has no infinite numbers
             value: badness.abs().min(f64::MAX),
         })
     };
     (0..MEASURES.len()).flat_map(of).collect()
 }
 
-/// Takes all measures of particle `i`.
+/// Evaluates all measures at particle `i`.
 fn examine<const D: usize>(cloud: &Cloud<D>, walls: &WallGrid<'_, D>, i: usize, tally: &mut Tally) {
     let row = cloud.neighbours.of(i);
     let h = cloud.spacing[i];
@@ -253,7 +255,7 @@ fn examine<const D: usize>(cloud: &Cloud<D>, walls: &WallGrid<'_, D>, i: usize, 
         nearest = nearest.min(apart / (0.5 * (h + cloud.spacing[*j as usize])));
         seen |= sectors(
             &match wall {
-                // in layers the last axis is the normal already
+                // inside layers the last axis already is the normal
                 Some(w) if !layered => across(&d, &w.normal),
                 _ => d,
             },
@@ -293,15 +295,16 @@ fn examine_wall<const D: usize>(
     }
 }
 
-/// Components of `d` in axes of which the last is the normal.
+/// Components of `d` in orthonormal axes of which the last is the normal.
 fn across<const D: usize>(d: &Vector<D>, normal: &Vector<D>) -> Vector<D> {
-    // Householder reflection that takes the normal to the last axis
+    // Householder reflection that maps the normal to the last axis
     let mut v = *normal;
     v[D - 1] += if normal[D - 1] >= 0.0 { 1.0 } else { -1.0 };
     *d - v * (2.0 * d.dot(&v) / v.norm_squared())
 }
 
-/// The sectors that hold `d`, one bit each: 2^D by the signs of the components, or 2^(D−1) leaving out the last one.
+/// The sectors that contain `d`, as bits: 2^D sectors by the signs of the components, or 2^(D−1) when the last
+/// component is ignored.
 fn sectors<const D: usize>(d: &Vector<D>, half: bool) -> u32 {
     let axes = if half { D - 1 } else { D };
     let border = BORDER * d.norm();
@@ -310,7 +313,7 @@ fn sectors<const D: usize>(d: &Vector<D>, half: bool) -> u32 {
         .fold(0, |bits, s| bits | 1 << s)
 }
 
-/// Interface particles in bins, to find walls that face one another.
+/// Interface particles in a hash grid, for the search of facing walls.
 struct WallGrid<'a, const D: usize> {
     cloud: &'a Cloud<D>,
     grids: std::collections::BTreeMap<u64, Grid<D>>,
@@ -326,8 +329,8 @@ impl<'a, const D: usize> WallGrid<'a, D> {
         Self { cloud, grids }
     }
 
-    /// Distance, in spacings, to the nearest wall of the same or half the spacing that faces particle `i` across less than
-    /// `THIN_GAP` of them.
+    /// Distance, in spacings, to the nearest wall of the same or half the spacing that faces particle `i`; `None` when
+    /// it is `THIN_GAP` spacings or more.
     fn gap(&self, i: usize, normal: &Vector<D>) -> Option<f64> {
         let (x, h) = (self.cloud.x[i], self.cloud.spacing[i]);
         let mut gap = THIN_GAP;
@@ -336,7 +339,7 @@ impl<'a, const D: usize> WallGrid<'a, D> {
                 let other = &self.cloud.interface[j as usize - self.cloud.n_fluid].normal;
                 let d = self.cloud.x[j as usize] - x;
                 let r = d.norm();
-                // both look at each other across the fluid, not through a body or along a wall
+                // the walls must face each other across the fluid, not through a body or along a wall
                 if other.dot(normal) < FACING && d.dot(normal) > 0.7 * r && d.dot(other) < -0.7 * r {
                     gap = gap.min(r / h);
                 }
@@ -351,16 +354,16 @@ fn notes<const D: usize>(cloud: &Cloud<D>, tally: &Tally, linear_walls: usize) -
     let n_gap: usize = tally.counts[GAP].iter().sum();
     if let Some((gap, i)) = tally.worst[GAP].first() {
         notes.push(format!(
-            "{n_gap} interface particles face another wall across less than {THIN_GAP} spacings; the narrowest gap has {:.1} at {}; hint: refine there with a `cloud.box`",
+            "{n_gap} interface particles face another wall at less than {THIN_GAP} spacings; the narrowest gap is {:.1} spacings wide, at {}; hint: refine there with a `cloud.box`",
             -gap, place(&cloud.x[*i])
         ));
     }
     if linear_walls > 0 {
-        notes.push(format!("{linear_walls} of {} wall fits fell back to linear", cloud.interface.len()));
+        notes.push(format!("{linear_walls} of {} wall fits are linear instead of quadratic", cloud.interface.len()));
     }
     if let Some((angle, i)) = tally.worst[ANGLE].first().filter(|w| w.0 > 30.0) {
         notes.push(format!(
-            "neighbouring normals turn by up to {angle:.0} degrees, at {}; hint: raise `cloud.curvature_levels`",
+            "neighbouring wall normals differ by up to {angle:.0} degrees, at {}; hint: raise `cloud.curvature_levels`",
             place(&cloud.x[*i])
         ));
     }
@@ -378,7 +381,7 @@ fn notes<const D: usize>(cloud: &Cloud<D>, tally: &Tally, linear_walls: usize) -
     notes
 }
 
-/// Σ S and Σ |S| of every body.
+/// Sums Σ S and Σ |S| of the area vectors of every body.
 fn closure<const D: usize>(cloud: &Cloud<D>) -> Vec<(Vector<D>, f64)> {
     let n = cloud.interface.iter().map(|w| usize::from(w.body) + 1).max().unwrap_or(0);
     let mut sums = vec![(Vector::ZERO, 0.0); n];

@@ -1,55 +1,62 @@
-//! Repair of clouds that would spoil a run, before the run starts.
+//! Repair of neighbour lists that would spoil a computation, before it starts.
 //!
-//! The least-squares gradient of a particle needs neighbours that surround it, at a fair distance. A row of the neighbour
-//! graph is *sick* when it has fewer than D + 2 entries, when its normal matrix M = Σ d dᵀ/|d|² has a condition number above
-//! 10³, or, for a fluid particle, when all it sees lies to one side: |Σ d/|d|²| / Σ 1/|d| above 0.9. Also sick is a fluid
-//! particle nearer than 0.3 spacings to another: its weights 1/|d| would outweigh all others. Treated in this order:
+//! The least-squares gradient of a particle needs neighbours on all sides at a suitable distance. A row of the
+//! neighbour lists is
+//! *insufficient* when it has fewer than D + 2 entries, when the condition number of its normal matrix M = Σ d dᵀ/|d|²
+//! exceeds 10³,
+//! or, for a fluid particle, when all neighbours lie on one side: |Σ d/|d|²| / Σ 1/|d| above 0.9. A fluid particle
+//! nearer than 0.3 spacings to another is *crowded*: the weights 1/|d| of this neighbour would outweigh all others. The
+//! remedies are tried in this order:
 //!
-//! 1. *wider*: everything in sight within 2.4 spacings joins the row, and the particle joins the rows of the new ones;
-//! 2. *nudged*: a fluid particle moves straight away from what is too near;
-//! 3. *first order*: a bounded gradient for the fluxes (see `Operators`), none for the reconstruction;
-//! 4. refused, if a fluid particle is left with fewer than D neighbours.
+//! 1. *wider*: all visible particles within 2.4 spacings are added to the row, and the particle is added to their rows;
+//! 2. *moved*: a crowded fluid particle is moved straight away from its nearest neighbour;
+//! 3. *first order*: the fluxes use a bounded gradient (see `Operators`), the reconstruction uses none;
+//! 4. the cloud is rejected if a fluid particle is left with fewer than D neighbours.
 //!
-//! An interface particle that is in the row of no fluid particle would push nothing, and loads would count a force that the gas does
-//! not feel. It joins the nearest fluid particle of those that its own state is fitted to.
+//! An interface particle that is a neighbour of no fluid particle would exert no pressure on the gas, although the
+//! loads count its force. It is added to the row of the nearest of the fluid particles from which its own state is
+//! fitted.
 //!
-//! A row that is not sick is not touched: healthy clouds keep every bit.
+//! Rows that need no repair are not changed, so that sound clouds keep every bit.
 use super::neighbours::{Rows, Search, Seen};
 use super::particles::Particles;
 use crate::math::Vector;
 use crate::math::least_squares::condition_symmetric;
 use crate::math::parallel::sweep;
 
-/// Condition number of the normal matrix above which a row is sick.
+/// Condition number of the normal matrix above which a row is insufficient.
 pub const WORST_CONDITION: f64 = 1e3;
-/// One-sidedness above which the row of a fluid particle is sick; a corner of the body gives 0.6, a cone of 25° 0.9.
+/// One-sidedness above which the row of a fluid particle is insufficient; a corner of a body gives 0.6, a cone of 25°
+/// gives 0.9.
 pub const WORST_ONE_SIDED: f64 = 0.9;
-/// Distance to the nearest neighbour, in spacings, below which a fluid particle is sick (measured: 0.03 diverges).
+/// Distance to the nearest neighbour, in spacings, below which a fluid particle is crowded (computations diverged at
+/// 0.03).
 pub const NEAREST: f64 = 0.3;
-/// Radius of a widened row in spacings.
+/// Radius, in spacings, of an enlarged row.
 const WIDE: f64 = 2.4;
-/// Distance, in spacings, to which a particle is nudged away from its nearest neighbour.
+/// Distance, in spacings, to which a crowded particle is moved away from its nearest neighbour.
 const NUDGE: f64 = 0.36;
 
-/// What was done to a cloud.
+/// The repairs of a cloud.
 #[derive(Clone, Debug, Default)]
 pub struct Repair<const D: usize> {
-    /// Entries that join rows: (row, what it sees), sorted.
+    /// Entries that are added to rows, as pairs (row, neighbour) in sorted order.
     pub extra: Vec<(u32, Seen)>,
-    /// Particles that moved, with their new places.
+    /// Particles that were moved, with their new positions.
     pub moved: Vec<(u32, Vector<D>)>,
-    /// Rows of first order, ascending.
+    /// Particles whose reconstruction is first order, in ascending order.
     pub first_order: Vec<u32>,
-    /// Places that cannot be repaired, in words.
+    /// One message for each particle that cannot be repaired.
     pub refused: Vec<String>,
-    /// Number of rows that were widened with success.
+    /// Number of rows that were enlarged successfully.
     pub widened: usize,
-    /// Number of interface particles that no fluid particle saw.
+    /// Number of interface particles that were neighbours of no fluid particle.
     pub joined: usize,
 }
 
 impl<const D: usize> Repair<D> {
-    /// Examines every row and treats the sick ones; `walls` holds the fluid particles that interface particles are fitted to.
+    /// Examines every row and repairs the insufficient ones. `walls` holds the fluid particles from which interface
+    /// particles are fitted.
     pub(super) fn of(search: &Search<'_, D>, rows: &Rows, walls: &Rows) -> Self {
         let particles = search.particles();
         let mut sick = vec![false; particles.n_rows()];
@@ -65,7 +72,8 @@ impl<const D: usize> Repair<D> {
         repair
     }
 
-    /// Joins each interface particle that no fluid particle sees to the nearest in front of it.
+    /// Adds each interface particle that is a neighbour of no fluid particle to the row of the nearest one in front of
+    /// it.
     fn join_walls(&mut self, search: &Search<'_, D>, rows: &Rows, walls: &Rows) {
         let particles = search.particles();
         let fluid = |s: &&Seen| (s.0 as usize) < particles.n_fluid;
@@ -111,16 +119,16 @@ impl<const D: usize> Repair<D> {
         }
     }
 
-    /// What was done, in words: one line a kind of treatment.
+    /// The repairs as messages, one for each kind.
     pub fn notes(&self) -> Vec<String> {
         let line = |n: usize, what: &str| {
             (n > 0).then(|| format!("{n} {} {what}", if n == 1 { "particle" } else { "particles" }))
         };
         [
-            line(self.widened, "had too few neighbours around and got more, within 2.4 spacings"),
-            line(self.moved.len(), "moved away from a neighbour nearer than 0.3 spacings"),
-            line(self.joined, "of the surface were seen by none in the gas and joined the nearest"),
-            line(self.first_order.len(), "fell back to first order: too few neighbours around"),
+            line(self.widened, "had too few neighbours; all visible particles within 2.4 spacings were added"),
+            line(self.moved.len(), "moved away from a neighbour that was nearer than 0.3 spacings"),
+            line(self.joined, "on the surface had no fluid neighbour; the nearest fluid particle was added"),
+            line(self.first_order.len(), "limited to first-order reconstruction: too few neighbours"),
         ]
         .into_iter()
         .flatten()
@@ -130,7 +138,7 @@ impl<const D: usize> Repair<D> {
 
 fn complaint<const D: usize>(particles: &Particles<D>, i: usize, n: usize) -> String {
     let place: Vec<String> = particles.x[i].0.iter().map(|c| format!("{c:.5}")).collect();
-    format!("particle {i} at ({}) sees {n} others; a gradient needs at least {D}", place.join(", "))
+    format!("particle {i} at ({}) has {n} neighbours; a gradient needs at least {D}", place.join(", "))
 }
 
 fn offsets<const D: usize>(search: &Search<'_, D>, i: usize, x: &Vector<D>, row: &[Seen]) -> Vec<Vector<D>> {
@@ -150,7 +158,8 @@ fn is_sick<const D: usize>(search: &Search<'_, D>, i: usize, x: &Vector<D>, row:
     crowded && is_crowded(search, i, x, row) || !sums.is_well_spread(particles.is_interface(i))
 }
 
-/// True when a fluid particle has a neighbour nearer than allowed; layers keep their distances by construction.
+/// True when a fluid particle has a neighbour nearer than allowed; particles in layers keep their distances by
+/// construction.
 fn is_crowded<const D: usize>(search: &Search<'_, D>, i: usize, x: &Vector<D>, row: &[Seen]) -> bool {
     let particles = search.particles();
     let near =
@@ -158,7 +167,8 @@ fn is_crowded<const D: usize>(search: &Search<'_, D>, i: usize, x: &Vector<D>, r
     !particles.is_interface(i) && !search.in_layers(i) && row.iter().any(near)
 }
 
-/// The place away from the nearest neighbour, if that is in sight and not crowded as well.
+/// Position farther away from the nearest neighbour; `None` when it is not visible from the particle or is crowded as
+/// well.
 fn nudged<const D: usize>(search: &Search<'_, D>, i: usize, row: &[Seen]) -> Option<Vector<D>> {
     let x = search.particles().x[i];
     let distance = |s: &Seen| (search.position(s.0 as usize, s.1) - x).norm_squared();
@@ -169,7 +179,7 @@ fn nudged<const D: usize>(search: &Search<'_, D>, i: usize, row: &[Seen]) -> Opt
     (free && away.norm() > 0.0).then_some(place)
 }
 
-/// Sums over a row from which its health follows.
+/// Sums over the offsets of a row from which its quality follows.
 #[derive(Clone, Copy, Debug)]
 pub struct Sums<const D: usize> {
     /// Σ d dᵀ/|d|²; its trace is the number of neighbours.
@@ -201,7 +211,8 @@ impl<const D: usize> Sums<D> {
         self.n += 1;
     }
 
-    /// |Σ w d| / Σ w|d| with w = 1/|d|²: 0 when surrounded, 1 when everything lies in one direction.
+    /// One-sidedness |Σ w d| / Σ w|d| with w = 1/|d|²: 0 for symmetric surroundings, 1 when all neighbours lie in one
+    /// direction.
     pub fn one_sided(&self) -> f64 {
         if self.n > 0 { self.side.norm() / self.reach } else { 1.0 }
     }
@@ -211,8 +222,8 @@ impl<const D: usize> Sums<D> {
         condition_symmetric(&self.matrix)
     }
 
-    /// Upper bound of the condition number without eigenvalues: with the trace n, the other eigenvalues multiply to at most
-    /// (n/(D−1))^(D−1), so that λ_min ≥ det·((D−1)/n)^(D−1).
+    /// Upper bound of the condition number without eigenvalues: since the trace is n, the product of the other
+    /// eigenvalues is at most (n/(D−1))^(D−1), so that λ_min ≥ det·((D−1)/n)^(D−1).
     fn condition_bound(&self) -> f64 {
         let m = &self.matrix;
         let n = self.n as f64;

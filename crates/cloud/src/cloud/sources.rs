@@ -1,33 +1,33 @@
-//! Where the background must be fine: points that ask for a spacing around them.
+//! Refinement sources: points and boxes that limit the size of the background cells around them.
 //!
-//! A source at x_k with spacing h_k and `layers` n splits every cell of size s > h_k whose centre is nearer than
-//! (n/2 + 0.87) s: this leaves about n cells of each size before the next coarser one begins.
+//! A source at x_k with spacing h_k and `layers` n splits every cell of size s > h_k whose centre is nearer than (n/2 +
+//! 0.87) s. This leaves about n cells of each size before the next coarser size begins.
 use crate::math::{Bounds, Vector};
 
-/// Points in a leaf of the search tree.
+/// Number of points in a leaf of the search tree.
 const BUCKET: usize = 8;
-/// Half diagonal of the unit cube: the cell's own extent.
+/// Half the diagonal of the unit cube: the extent of the cell itself.
 const HALF_DIAGONAL: f64 = 0.87;
-/// Slack of the comparison of sizes that are powers of two apart.
+/// Relative tolerance for the comparison of sizes that are powers of two apart.
 pub(super) const SIZE_SLACK: f64 = 1.001;
 
-/// A point that asks for a spacing.
+/// A point around which the cells must not be larger than a spacing.
 #[derive(Clone, Copy, Debug)]
 pub struct Source<const D: usize> {
-    /// Place.
+    /// Position, in the unit of the geometry.
     pub x: Vector<D>,
-    /// Largest cell allowed around it.
+    /// Greatest cell size around the point.
     pub spacing: f64,
-    /// Cells of each size around it.
+    /// Number of cells of each size around the point.
     pub layers: f64,
 }
 
-/// A box inside which cells may not be larger than `spacing`.
+/// A box in which the cells must not be larger than `spacing`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SourceBox<const D: usize> {
-    /// Extent.
+    /// Extent of the box.
     pub bounds: Bounds<D>,
-    /// Largest cell allowed inside.
+    /// Greatest cell size in the box.
     pub spacing: f64,
 }
 
@@ -40,7 +40,7 @@ struct Node<const D: usize> {
     right: u32,
 }
 
-/// Sources in a bounding-volume tree.
+/// Refinement sources in a bounding-volume tree.
 pub struct Sources<const D: usize> {
     points: Vec<Source<D>>,
     boxes: Vec<SourceBox<D>>,
@@ -48,7 +48,7 @@ pub struct Sources<const D: usize> {
 }
 
 impl<const D: usize> Sources<D> {
-    /// Sorts the sources into a tree.
+    /// Builds the tree of the sources.
     pub fn new(mut points: Vec<Source<D>>, boxes: Vec<SourceBox<D>>) -> Self {
         let mut nodes = Vec::new();
         if !points.is_empty() {

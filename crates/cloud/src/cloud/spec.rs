@@ -1,12 +1,12 @@
-//! What a cloud is made from, as plain values: by hand, or from the tables `[cloud]` and `[boundary]` of a case.
+//! Specification of a cloud as plain values, set by hand or read from the tables `[cloud]` and `[boundary]` of a case.
 use super::sources::SourceBox;
 use crate::case::{self, Case, Side, Wake, WallLayers};
 use crate::math::{Bounds, Vector};
 
-/// Greatest number of particles whose cells have numbers of 32 bits, parents included.
-const MOST: usize = 1 << 30;
+/// Greatest number of particles whose tree, parent cells included, can still be numbered with 32 bits.
+const MAX_PARTICLES: usize = 1 << 30;
 
-/// Spacing, domain and refinement of a cloud; lengths are in the unit of the geometry.
+/// Spacing, domain and refinement of a cloud. All lengths are in the unit of the geometry.
 ///
 /// ```
 /// # use alula_cloud::cloud::{Cloud, CloudSpec};
@@ -18,40 +18,42 @@ const MOST: usize = 1 << 30;
 /// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct CloudSpec<const D: usize> {
-    /// Spacing at the surface; of the whole domain when there is none.
+    /// Spacing at the surface, or in the whole domain when there is no surface.
     pub spacing: f64,
-    /// The domain, whole numbers of `spacing` long; `None`: around the surface as `far_field` says.
+    /// Extent of the domain, each side a whole multiple of `spacing`; `None`: a domain around the surface of half-width
+    /// `far_field`.
     pub domain: Option<Bounds<D>>,
-    /// Half-width of a domain around the surface; `None`: 40 lengths of it (2-D), 10 (3-D).
+    /// Half-width of a domain around the surface; `None`: 40 (2-D) or 10 (3-D) body lengths.
     pub far_field: Option<f64>,
-    /// Conditions on the sides of the domain, [axis][0: smallest, 1: largest coordinate].
+    /// Boundary conditions on the sides of the domain, `[axis][0: smallest, 1: largest coordinate]`.
     pub sides: [[Side; 2]; D],
-    /// Boxes with their own spacing.
+    /// Boxes with a spacing of their own.
     pub boxes: Vec<SourceBox<D>>,
     /// Refinement behind the surface along the first axis.
     pub wake: Option<Wake>,
-    /// Particles per level of refinement, counted away from the surface.
+    /// Number of particles across each level of refinement, counted away from the surface.
     pub layers: f64,
-    /// Extra levels of refinement at sharp edges.
+    /// Number of additional levels of refinement at sharp edges.
     pub edge_levels: u32,
-    /// Spacing is at most this fraction of the local radius of curvature.
+    /// Upper bound of the spacing as a fraction of the local radius of curvature.
     pub curvature: f64,
-    /// Greatest number of extra levels that curvature may ask for.
+    /// Greatest number of additional levels of refinement due to curvature.
     pub curvature_levels: u32,
-    /// Layers of particles along the walls, 2-D only.
+    /// Layers of particles along the walls; `None`: no layers.
     pub wall_layers: Option<WallLayers>,
-    /// Fluid particles nearer to the wall than this fraction of the local spacing are left out.
+    /// Clearance of fluid particles from the wall as a fraction of the local spacing; particles nearer to the wall are
+    /// left out.
     pub blank: f64,
-    /// Radius of the clouds near the wall in local spacings.
+    /// Radius of the neighbour lists near walls, in local spacings.
     pub radius: f64,
-    /// Random displacement of interior particles as a fraction of the local spacing.
+    /// Amplitude of the random displacement of interior particles as a fraction of the local spacing.
     pub jitter: f64,
-    /// Greatest number of particles: what memory holds. A cloud that would be larger is refused before it is built.
+    /// Greatest number of particles that the memory can hold. A larger cloud is rejected before it is built.
     pub most: usize,
 }
 
 impl<const D: usize> CloudSpec<D> {
-    /// A cloud of this spacing in a far field, with the values that a case file leaves out.
+    /// A cloud of this spacing with a far field; every other value is the default of the case file.
     pub fn new(spacing: f64) -> Self {
         Self {
             spacing,
@@ -68,11 +70,11 @@ impl<const D: usize> CloudSpec<D> {
             blank: 0.4,
             radius: 1.6,
             jitter: 0.0,
-            most: MOST,
+            most: MAX_PARTICLES,
         }
     }
 
-    /// What `[cloud]` and `[boundary]` of a case say, whose spacing is known.
+    /// The values of the tables `[cloud]` and `[boundary]` of a case. The spacing of the case must be resolved.
     pub fn of_case(case: &Case) -> Self {
         let (cloud, s) = (&case.cloud, &case.boundary);
         let sides = [[s.x_min, s.x_max], [s.y_min, s.y_max], [s.z_min, s.z_max]];
@@ -93,19 +95,19 @@ impl<const D: usize> CloudSpec<D> {
             blank: cloud.blank,
             radius: cloud.radius,
             jitter: cloud.jitter,
-            most: MOST,
+            most: MAX_PARTICLES,
         }
     }
 }
 
 impl<const D: usize> CloudSpec<D> {
-    /// True where the side `end` of axis `d` is a plane of symmetry, and the other one is not.
+    /// True when side `end` of axis `d` is a plane of symmetry and the opposite side is not.
     pub fn halves(&self, d: usize, end: usize) -> bool {
         self.sides[d][end] == Side::Symmetry && self.sides[d][1 - end] != Side::Symmetry
     }
 
-    /// What the domain surely reaches no farther than: an explicit one, or the side of planes of symmetry that the gas is on; around
-    /// bodies these pass through the origin of their axis.
+    /// Bounds that the domain cannot exceed: those of an explicit domain, or the half space on the fluid side of each
+    /// plane of symmetry. A plane of symmetry of a domain around bodies passes through the origin of its axis.
     pub fn limits(&self) -> Bounds<D> {
         let end = |d: usize, end: usize, none: f64| if self.halves(d, end) { 0.0 } else { none };
         self.domain.unwrap_or_else(|| Bounds {

@@ -1,28 +1,29 @@
-//! Surfaces under a smooth map of space, X ↦ x(X) with the gradient F.
+//! Transformation of surface data under a smooth map of space, X ↦ x(X), with the deformation gradient F.
 //!
-//! Area vectors go by Nanson's formula, S′ = cof F S with cof F = det F F⁻ᵀ, and normals with them: n′ = m/|m|, m = F⁻ᵀ n.
-//! Differentiating Fᵀ m = n gives ∂m/∂x = F⁻ᵀ (K − Σ_i m_i ∂²x_i/∂X∂X) F⁻¹, of which the part along the surface over |m| is the
-//! curvature tensor of the deformed surface: exact for any map with two derivatives.
+//! Area vectors transform by Nanson's formula, S′ = cof F S with cof F = det F F⁻ᵀ, and normals accordingly: n′ =
+//! m/|m|, m = F⁻ᵀ n. Differentiating Fᵀ m = n gives ∂m/∂x = F⁻ᵀ (K − Σ_i m_i ∂²x_i/∂X∂X) F⁻¹. Its part along the
+//! surface divided by |m| is the curvature tensor of the deformed surface. This is exact for any map with two
+//! derivatives.
 use super::Interface;
 use crate::math::Vector;
 use crate::math::square::{cofactors, determinant, times};
 
-/// First and second derivatives of a map at one point.
+/// First and second derivatives of a map of space at one point.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Strain<const D: usize> {
-    /// Rows of F.
+    /// Rows of the deformation gradient F = ∂x/∂X.
     pub map: [Vector<D>; D],
-    /// ∂²x_i/∂X_j∂X_k.
+    /// Second derivatives ∂²x_i/∂X_j∂X_k [1/length].
     pub second: [[Vector<D>; D]; D],
 }
 
 impl<const D: usize> Strain<D> {
-    /// det F.
+    /// Determinant of F, the ratio of volumes.
     pub fn determinant(&self) -> f64 {
         determinant(&self.map)
     }
 
-    /// Rows of F⁻¹.
+    /// Rows of the inverse F⁻¹.
     pub fn inverse(&self) -> [Vector<D>; D] {
         let (cofactors, part) = (cofactors(&self.map), 1.0 / self.determinant());
         std::array::from_fn(|i| Vector::from_fn(|j| cofactors[j][i] * part))
@@ -30,7 +31,7 @@ impl<const D: usize> Strain<D> {
 }
 
 impl<const D: usize> Interface<D> {
-    /// Carries its vectors and its curvature along the map.
+    /// Transforms the normal, the area vector and the curvature tensor under the map.
     pub fn deform(&mut self, strain: &Strain<D>) {
         let (cofactors, inverse) = (cofactors(&strain.map), strain.inverse());
         let part = 1.0 / strain.determinant();
@@ -41,7 +42,7 @@ impl<const D: usize> Interface<D> {
         let normal = m * (1.0 / size);
         let bend = |j: usize| (0..D).fold(self.curvature[j], |sum, i| sum - strain.second[i][j] * m[i]);
         let bends: [Vector<D>; D] = std::array::from_fn(bend);
-        // columns of F⁻¹ P′: where directions along the new surface come from
+        // columns of F⁻¹ P′, which map directions along the deformed surface back to the original one
         let along: [Vector<D>; D] = std::array::from_fn(|k| {
             let tangent = Vector::axis(k) - normal * normal[k];
             Vector::from_fn(|i| inverse[i].dot(&tangent))

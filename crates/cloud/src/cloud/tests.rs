@@ -209,7 +209,10 @@ fn clouds_that_are_too_large_are_refused_before_they_are_built() {
 #[test]
 fn spacings_below_the_deepest_cells_are_refused_not_coarsened() {
     let fine = refused("spacing = 0.03\nbox = [{ min = [2, 2], max = [2.0001, 2.0001], spacing = 1e-7 }]\n", 1_000_000);
-    assert!(fine.contains("a spacing of 1.000e-7 is asked for") && fine.contains("none is finer than"), "{fine}");
+    assert!(
+        fine.contains("the spacing 1.000e-7 is too fine") && fine.contains("the finest possible spacing is"),
+        "{fine}"
+    );
 }
 
 #[test]

@@ -1,13 +1,14 @@
-//! Clouds of particles that travel: built anew where the particles are.
+//! Clouds of Lagrangian particles, which are rebuilt around the current particle positions.
 //!
-//! A [`BackgroundDomain`] is what such a cloud keeps for ever: the background, which says how large the spacing H(x) is to be, the
-//! sides of the domain with their outer particles, the bodies with their interface particles. Whatever the fluid particles
-//! do, a cloud follows from where they are, by the ball rule r ≤ ρ (h_i + h_j)/2 everywhere.
+//! A [`BackgroundDomain`] holds what stays fixed: the background, which prescribes the local spacing H(x), the sides of
+//! the domain with their outer particles, and the bodies with their interface particles. The cloud follows from the
+//! positions of the fluid particles by the ball rule r ≤ ρ (h_i + h_j)/2 everywhere.
 //!
-//! Before that particles are *renewed*. One is removed that has come into a wall (or nearer than `blank` spacings), within
-//! 0.4 spacings of an interface particle, to an outer particle of an open side, or to another fluid particle (the second of
-//! the two goes); one that left through a periodic side comes back through the other. Where the background has an empty
-//! place, a middle or a corner of a leaf with no particle within 0.9 spacings (1.0 in 3-D), a particle is inserted there.
+//! Before a cloud is rebuilt, particles are removed and inserted. A particle is removed when it has entered a body (or
+//! comes nearer than `blank` spacings to it), or comes too near to an interface particle (0.4 spacings), to an outer
+//! particle of an open side, or to another fluid particle; of two such fluid particles, the second is removed. A
+//! particle that leaves through a periodic side returns through the opposite side. A particle is inserted at every
+//! empty position of the background: a centre or a corner of a leaf with no particle within 0.9 spacings (1.0 in 3-D).
 use std::sync::Arc;
 
 use super::fill::{Ball, Walls, curve_position, side_of};
@@ -25,32 +26,32 @@ use crate::math::parallel::{CHUNK, order_by_key, parts, sweep, sweep_each, sweep
 use crate::math::{Bounds, Vector};
 use crate::motion::RigidPose;
 
-/// Smallest radius of the clouds in spacings: with 1.6, enough on a lattice, sheared clouds have too few neighbours (measured:
-/// six times the error of the isentropic vortex after two units of time).
-const LEAST_RADIUS: f64 = 1.8;
-/// Pairs nearer than this, in mean spacings, are too near.
+/// Minimum radius of the neighbour lists in spacings. With 1.6, which suffices on a lattice, sheared clouds have too
+/// few neighbours: the error of the isentropic vortex after two units of time was six times larger.
+const MIN_RADIUS: f64 = 1.8;
+/// Distance, in mean spacings, below which two particles are too near.
 const CROWDED: f64 = 0.6;
-/// Distance, in spacings, from an interface particle within which no fluid particle stays.
+/// Minimum distance, in spacings, between fluid particles and interface particles.
 const CLEARANCE: f64 = 0.4;
-/// Distance, in spacings, from an open side within which no fluid particle stays: half a spacing from the outer particles.
+/// Minimum distance, in spacings, between fluid particles and an open side: half a spacing from the outer particles.
 const OPEN_GAP: f64 = 1.0;
-/// The same from a plane of symmetry: the image is twice as far.
+/// Minimum distance, in spacings, between fluid particles and a plane of symmetry; the image is twice as far away.
 const CLOSED_GAP: f64 = 0.2;
-/// Radius of an empty place in spacings, two and three dimensions: beyond half the diagonal of a leaf, where a regular
-/// cloud has its corners.
+/// Radius, in spacings, of a region that counts as empty, in two and three dimensions. It exceeds half the diagonal of
+/// a leaf, where a regular cloud has its corners.
 const EMPTY: [f64; 2] = [0.9, 1.0];
-/// Samples of a leaf along each axis, from which volumes are counted.
+/// Number of samples of a leaf along each axis, from which volumes are computed.
 const SAMPLES: usize = 4;
-/// Greatest spacing of a particle over that of one which sees it: leaves that touch differ by one level.
+/// Greatest ratio of the spacings of two neighbours, because adjacent leaves differ by one level.
 const LARGER: f64 = 1.5;
-/// Distance to the wall, in spacings, up to which it is known.
+/// Distance to the wall, in spacings, up to which it is computed.
 const KNOWN: f64 = NEAR + 1.0;
-/// Distance, in leaves, beyond which a sample belongs to nobody.
+/// Distance, in leaf sizes, beyond which a sample is assigned to no particle.
 const FARTHEST: f64 = 8.0;
-/// Marks a particle that was not there before.
+/// Marks an inserted particle, which has no predecessor.
 pub const NEW: u32 = u32::MAX;
 
-/// What a cloud keeps while its particles travel.
+/// Background, sides and bodies, which stay the same while the particles travel.
 pub struct BackgroundDomain<const D: usize> {
     tree: Arc<Tree<D>>,
     layout: Layout<D>,
@@ -61,21 +62,22 @@ pub struct BackgroundDomain<const D: usize> {
     radius: f64,
     blank: f64,
     uniform: bool,
-    /// For each cell of the background, true when all leaves that particles in it see are as large.
+    /// For each cell of the background, true when all leaves that the particles in it can have neighbours in are of the
+    /// same size.
     even: Vec<bool>,
 }
 
-/// A cloud built anew, and how its fluid particles follow from those before.
+/// A rebuilt cloud with the relation of its fluid particles to those of the previous cloud.
 pub struct Recloud<const D: usize> {
-    /// The cloud.
+    /// The rebuilt cloud.
     pub cloud: Cloud<D>,
-    /// For each fluid particle the one it was, or `NEW`.
+    /// For each fluid particle its index in the previous cloud, or `NEW`.
     pub from: Vec<u32>,
-    /// Particles of the cloud before that are gone, ascending.
+    /// Indices of removed particles in the previous cloud, ascending.
     pub removed: Vec<u32>,
 }
 
-/// The bodies as they stand at one time.
+/// The bodies in their current positions.
 struct Scene<'a, const D: usize> {
     poses: &'a [RigidPose<D>],
     surface: Option<std::borrow::Cow<'a, Surface<D>>>,
@@ -83,7 +85,7 @@ struct Scene<'a, const D: usize> {
 }
 
 impl<const D: usize> BackgroundDomain<D> {
-    /// What a cloud of this specification, which is built already, keeps.
+    /// Prepares the background of `cloud`, which was built from `spec` and `surface`.
     pub fn new(spec: &CloudSpec<D>, surface: Option<&Surface<D>>, cloud: &Cloud<D>) -> Result<Self, CloudError> {
         let layout = Layout::new(spec, surface)?;
         let tree = Arc::clone(&cloud.tree);
@@ -100,28 +102,30 @@ impl<const D: usize> BackgroundDomain<D> {
         let order = order_by_key(outer.len(), |k| curve_position(tree.anchor(outer[k].0.node)));
         let outer: Vec<_> = order.into_iter().map(|k| outer[k as usize]).collect();
         let transforms = cloud.transforms.clone();
-        let (radius, blank, uniform) = (spec.radius.max(LEAST_RADIUS), spec.blank, sizes.0 == sizes.1);
-        // from the middle of a leaf to a particle in it, to what that sees, and to what gives that its spacing
+        let (radius, blank, uniform) = (spec.radius.max(MIN_RADIUS), spec.blank, sizes.0 == sizes.1);
+        // from the centre of a leaf to a particle in it, to its neighbours, and to the leaves that determine their
+        // spacing
         let even = tree.even(0.5 + LARGER * radius + 1.0);
         let surface = surface.cloned();
         Ok(Self { tree, layout, transforms, placed, outer, surface, radius, blank, uniform, even })
     }
 
-    /// The cloud of fluid particles at `x` with the bodies at `poses` (none: where the case puts them), and which of `x`
-    /// each fluid particle is.
+    /// The cloud of fluid particles at `x` with the bodies at `poses` (empty: as the case places them), and for each
+    /// fluid particle its index in `x`. Fails when a particle lies inside a body.
     pub fn cloud(&self, poses: &[RigidPose<D>], x: &[Vector<D>]) -> Result<(Cloud<D>, Vec<u32>), CloudError> {
         let scene = self.scene(poses);
         let sites = self.sites(&scene, x);
         let buried = sites.iter().position(Option::is_none);
         if let Some(i) = buried {
-            let problem = format!("particle {i} at {} lies in a wall", x[i]);
+            let problem = format!("particle {i} at {} lies inside a body", x[i]);
             return Err(CloudError::Quality(vec![problem]));
         }
         let (particles, order) = self.gather(&scene, sites.into_iter().flatten().collect());
         Ok((self.joined(&scene, particles)?, order))
     }
 
-    /// The cloud of the fluid particles of `old`, without those that are in the way and with those that are missing.
+    /// The cloud of the fluid particles of `old` after removal and insertion of particles. Fails when no fluid particle
+    /// is left.
     pub fn recloud(&self, poses: &[RigidPose<D>], old: &Cloud<D>) -> Result<Recloud<D>, CloudError> {
         let scene = self.scene(poses);
         let mut x = old.x[..old.n_fluid].to_vec();
@@ -144,8 +148,8 @@ impl<const D: usize> BackgroundDomain<D> {
         Ok(Recloud { cloud: self.joined(&scene, particles)?, from, removed })
     }
 
-    /// Volumes of the fluid particles of a `cloud` just built: the part of the leaves without outer particles that is nearer to
-    /// each than to any other, by samples. Their sum is that of the cloud of the case.
+    /// Volumes of the fluid particles of a newly built `cloud`: the parts of the leaves without outer particles that
+    /// are nearest to each particle, by sampling. Their sum equals that of the cloud of the case.
     pub fn volumes(&self, poses: &[RigidPose<D>], cloud: &Cloud<D>) -> Vec<f64> {
         let scene = self.scene(poses);
         let mut rim: Vec<u32> = self.outer.iter().map(|(leaf, _)| leaf.node).collect();
@@ -198,12 +202,12 @@ impl<const D: usize> BackgroundDomain<D> {
         (best.1 != u32::MAX).then_some(best.1)
     }
 
-    /// Radius of the clouds in spacings.
+    /// Radius of the neighbour lists in spacings.
     pub fn radius(&self) -> f64 {
         self.radius
     }
 
-    /// The interface particles before any motion, and what they are.
+    /// Positions and data of the interface particles in the undisplaced bodies.
     pub fn walls(&self) -> (&[Vector<D>], &[super::Interface<D>]) {
         (&self.placed.x, &self.placed.interface)
     }
@@ -216,7 +220,8 @@ impl<const D: usize> BackgroundDomain<D> {
         Ok(Cloud::join(particles, found, self.transforms.clone()))
     }
 
-    /// How far particle `i` has to look: where the background is even no ball is larger than its own.
+    /// Search radius of particle `i`: its own radius where the background is uniform, the radius of a larger neighbour
+    /// elsewhere.
     fn reach(&self, scene: &Scene<'_, D>, particles: &Particles<D>, i: usize) -> f64 {
         let own = self.radius * particles.spacing[i];
         let farthest = LARGER * own;
@@ -244,13 +249,13 @@ impl<const D: usize> BackgroundDomain<D> {
         Scene { poses, surface, placed: Cow::Owned(placed) }
     }
 
-    /// The spacing wanted at `x`: the background's, which travels with the bodies, averaged over a leaf.
+    /// Prescribed spacing at `x`: the leaf size of the background, which moves with the bodies, averaged over one leaf.
     fn spacing(&self, poses: &[RigidPose<D>], x: &Vector<D>) -> f64 {
         let at = |x: &Vector<D>| self.average(&self.tree.leaf_at(x), x);
         poses.iter().map(|p| at(&p.inverse_point(x))).reduce(f64::min).unwrap_or_else(|| at(x))
     }
 
-    /// Mean size of the leaves around the place `x` in a leaf.
+    /// Mean size of the leaves around the position `x` in a leaf.
     fn average(&self, leaf: &Leaf<D>, x: &Vector<D>) -> f64 {
         let size = leaf.size;
         if self.uniform || self.even[leaf.node as usize] {
@@ -261,7 +266,7 @@ impl<const D: usize> BackgroundDomain<D> {
         sum / f64::from(1u32 << D)
     }
 
-    /// Back through the other one of two periodic sides.
+    /// Position after translation through periodic sides into the domain.
     fn wrapped(&self, x: &Vector<D>) -> Vector<D> {
         let (bounds, periodic) = (self.tree.bounds(), self.tree.periodic());
         let extent = bounds.extent();
@@ -272,7 +277,7 @@ impl<const D: usize> BackgroundDomain<D> {
         })
     }
 
-    /// Room for a particle at each place; `None` beyond the sides and in walls.
+    /// Sites for particles at the positions `x`; `None` outside the domain and in bodies.
     fn sites(&self, scene: &Scene<'_, D>, x: &[Vector<D>]) -> Vec<Option<ParticleSite<D>>> {
         let walls = Walls::new(scene.surface.as_deref(), self.tree.bounds(), &self.transforms);
         let mut sites = vec![None; x.len()];
@@ -302,7 +307,7 @@ impl<const D: usize> BackgroundDomain<D> {
         Some(ParticleSite { cell: self.tree.cell_at(x), centre: *x, spacing, node: leaf.node, distance, layer: None })
     }
 
-    /// Between the sides, with room for the outer particles of open ones.
+    /// True inside the domain, with room for the outer particles of open sides.
     fn is_inside(&self, x: &Vector<D>, h: f64) -> bool {
         let bounds = self.tree.bounds();
         (0..D).all(|d| {
@@ -315,7 +320,7 @@ impl<const D: usize> BackgroundDomain<D> {
         })
     }
 
-    /// Marks particles that are too near to others.
+    /// Marks particles that are too near to others in `gone`.
     fn thin_out(&self, old: &Cloud<D>, gone: &mut [bool]) {
         let walls = old.interface_range();
         let near = |i: usize, j: u32, part: f64| {
@@ -329,7 +334,7 @@ impl<const D: usize> BackgroundDomain<D> {
                 return Vec::new();
             }
             let part = |j: u32| if walls.contains(&old.source(j as usize).index) { CLEARANCE } else { CROWDED };
-            // of two fluid particles the second looks
+            // of two fluid particles only the second is tested
             let looks = |j: usize| j < i || j >= old.n_fluid;
             old.neighbours.of(i).iter().copied().filter(|j| looks(*j as usize) && near(i, *j, part(*j))).collect()
         });
@@ -342,7 +347,8 @@ impl<const D: usize> BackgroundDomain<D> {
         }
     }
 
-    /// Particles among those that have a seat, in the order of the curve, and which seat each one has.
+    /// The particles of these sites in the order of the space-filling curve, and the index of the site of each
+    /// particle.
     fn gather(&self, scene: &Scene<'_, D>, sites: Vec<ParticleSite<D>>) -> (Particles<D>, Vec<u32>) {
         let order = order_by_key(sites.len(), |k| curve_position(sites[k].cell));
         let sites = order.iter().map(|k| sites[*k as usize]).collect();
@@ -351,14 +357,14 @@ impl<const D: usize> BackgroundDomain<D> {
         (Particles::assemble(tree, &self.layout, all, Layers::default()), order)
     }
 
-    /// Seats at the empty places of the background.
+    /// Sites at the empty positions of the background.
     fn missing(&self, scene: &Scene<'_, D>, particles: &Particles<D>) -> Vec<ParticleSite<D>> {
         let search = Search::new(particles, scene.surface.as_deref(), &self.transforms, self.radius);
         let walls = Walls::new(scene.surface.as_deref(), self.tree.bounds(), &self.transforms);
         let cells = parts(self.tree.n_nodes(), CHUNK);
         let mut found: Vec<Vec<ParticleSite<D>>> = vec![Vec::new(); cells.len()];
         let leaves = |c: usize| cells[c].clone().filter_map(|k| self.tree.as_leaf(k as u32));
-        // the background travels with the bodies: its places are looked at where each of them carries it
+        // the background moves with the bodies: its positions are tested in the frame of each of them
         let carried = |x: &Vector<D>| scene.poses.iter().map(|p| p.point(x)).collect::<Vec<_>>();
         sweep_each(&mut found, |c| {
             let mut last = None;
@@ -382,14 +388,15 @@ impl<const D: usize> BackgroundDomain<D> {
         self.apart(found.into_iter().flatten())
     }
 
-    /// True for most places of a leaf that are not empty, at little cost: a particle of the leaf itself is near.
+    /// True for most positions of a leaf that are not empty, because a particle of the same leaf is near; an
+    /// inexpensive first test.
     fn is_taken(&self, scene: &Scene<'_, D>, particles: &Particles<D>, leaf: &Leaf<D>, x: &Vector<D>) -> bool {
         let within = EMPTY[D - 2] * leaf.size;
         let near = |k: u32| (particles.x[k as usize] - *x).norm() < within;
         scene.poses.is_empty() && self.even[leaf.node as usize] && particles.in_leaf(leaf.node).any(near)
     }
 
-    /// Those that keep their distance from the ones before.
+    /// The sites that keep their distance from all preceding ones.
     fn apart(&self, sites: impl Iterator<Item = ParticleSite<D>>) -> Vec<ParticleSite<D>> {
         let sites: Vec<ParticleSite<D>> = sites.collect();
         let largest = sites.iter().map(|s| s.spacing).fold(f64::MIN_POSITIVE, f64::max);

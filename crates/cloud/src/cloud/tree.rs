@@ -1,17 +1,17 @@
-//! The background: a forest of square (cubic) cells, each the root of a quadtree (octree).
+//! The background: a forest of square (cubic) root cells, each the root of a quadtree (octree).
 //!
 //! Cells are addressed by integers in units of the finest possible cell, so that neighbours are found by arithmetic alone.
 //! The forest is balanced: cells that touch, corners included, differ by one level at most.
 use crate::math::parallel::sweep;
 use crate::math::{Bounds, Vector};
 
-/// Deepest level below a root in a box of many roots, and of few: a cell is addressed by 31 bits.
+/// Deepest level below a root, for a box of many roots and of few roots: a cell is addressed by 31 bits.
 const LEVELS: [u8; 2] = [20, 26];
-/// Roots along an axis below which the deeper ones fit.
+/// Number of roots along an axis below which the deeper levels can be addressed.
 const FEW_ROOTS: u32 = 1 << 5;
 const NONE: u32 = u32::MAX;
 
-/// One cell; its children, when it has any, follow one another from `first_child`.
+/// A cell. Its children, if any, are stored consecutively from `first_child`.
 #[derive(Clone, Copy, Debug)]
 struct Node<const D: usize> {
     first_child: u32,
@@ -19,7 +19,7 @@ struct Node<const D: usize> {
     anchor: [u32; D],
 }
 
-/// A balanced forest of cells that fills a box.
+/// A balanced forest of cells that fills a box. Lengths are in the unit of the geometry.
 #[derive(Clone, Debug)]
 pub struct Tree<const D: usize> {
     origin: Vector<D>,
@@ -33,9 +33,9 @@ pub struct Tree<const D: usize> {
 /// A cell without children.
 #[derive(Clone, Copy, Debug)]
 pub struct Leaf<const D: usize> {
-    /// Index that stays valid as long as the tree does.
+    /// Index of the cell, valid as long as the tree exists.
     pub node: u32,
-    /// Middle.
+    /// Centre of the cell.
     pub centre: Vector<D>,
     /// Edge length.
     pub size: f64,
@@ -43,7 +43,7 @@ pub struct Leaf<const D: usize> {
     pub level: u8,
 }
 
-/// The box that a tree fills and how its sides connect.
+/// The box that a tree fills, its root cells and its periodic axes.
 #[derive(Clone, Copy, Debug)]
 pub struct Forest<const D: usize> {
     /// Corner with the smallest coordinates.
@@ -52,7 +52,7 @@ pub struct Forest<const D: usize> {
     pub root_size: f64,
     /// Number of root cells along each axis.
     pub roots: [u32; D],
-    /// Axes along which the box repeats itself.
+    /// True for the axes along which the box is periodic.
     pub periodic: [bool; D],
 }
 
@@ -69,8 +69,8 @@ impl<const D: usize> Forest<D> {
 }
 
 impl<const D: usize> Tree<D> {
-    /// Splits every cell for which `wanted(centre, size)` holds, then balances; `None` as soon as that takes more than `most`
-    /// cells, parents included.
+    /// Splits every cell for which `wanted(centre, size)` holds, then balances the tree; `None` as soon as this takes
+    /// more than `most` cells, parents included.
     pub fn build(forest: &Forest<D>, most: usize, wanted: impl Fn(&Vector<D>, f64) -> bool + Sync) -> Option<Self> {
         let count = forest.roots.iter().map(|r| u64::from(*r)).product::<u64>();
         let count = u32::try_from(count).ok().filter(|n| (*n as usize) <= most)?;
@@ -86,7 +86,7 @@ impl<const D: usize> Tree<D> {
             max_level,
             nodes,
         };
-        // children follow all cells of their parents' generation
+        // the children are stored after all cells of the generation of their parents
         let mut generation = 0..tree.nodes.len();
         while !generation.is_empty() {
             let mut split = vec![false; generation.len()];
@@ -114,7 +114,8 @@ impl<const D: usize> Tree<D> {
         (self.nodes[k as usize].first_child == NONE).then(|| self.leaf(k))
     }
 
-    /// For each cell, true when it is a leaf and all leaves within `reach` of its sizes around its middle are as large.
+    /// For each cell, true when it is a leaf and all leaves within `reach` times its size around its centre have the
+    /// same size.
     pub fn even(&self, reach: f64) -> Vec<bool> {
         let bounds = self.bounds();
         let mut even = vec![false; self.nodes.len()];
@@ -122,7 +123,7 @@ impl<const D: usize> Tree<D> {
             let Some(leaf) = self.as_leaf(k as u32) else { return false };
             let cube = Bounds { min: leaf.centre, max: leaf.centre }.padded(reach * leaf.size);
             let within = |d: usize| bounds.min[d] <= cube.min[d] && cube.max[d] <= bounds.max[d];
-            // what lies beyond a periodic side is not asked for
+            // leaves beyond a periodic side cannot be tested
             let mut even = (0..D).all(|d| !self.periodic[d] || within(d));
             self.overlapping(&cube, |other| even &= self.nodes[other as usize].level == leaf.level);
             even
@@ -130,13 +131,13 @@ impl<const D: usize> Tree<D> {
         even
     }
 
-    /// Integer coordinates of the lower corner of cell `k` on a grid that does not depend on how deep the tree may be; cells
-    /// deeper than the grid share those of the cell around them.
+    /// Integer coordinates of the lower corner of cell `k` on a grid that does not depend on the greatest depth of the
+    /// tree. Cells deeper than the grid share the coordinates of the cell that contains them.
     pub fn label(&self, k: u32) -> [u32; D] {
         self.anchor(k).map(|c| c >> (self.max_level - LEVELS[0]))
     }
 
-    /// Number of cells, parents included: the bound of every `Leaf::node`.
+    /// Number of cells, parents included; every `Leaf::node` is below it.
     pub fn n_nodes(&self) -> usize {
         self.nodes.len()
     }
@@ -147,17 +148,18 @@ impl<const D: usize> Tree<D> {
         Bounds { min: self.origin, max: self.origin + extent }
     }
 
-    /// Axes along which the box repeats itself.
+    /// True for the axes along which the box is periodic.
     pub fn periodic(&self) -> [bool; D] {
         self.periodic
     }
 
-    /// The leaf that contains `x`; points outside are moved to the border.
+    /// The leaf that contains `x`; a point outside the box is moved to its border.
     pub fn leaf_at(&self, x: &Vector<D>) -> Leaf<D> {
         self.leaf(self.find(&self.cell_at(x).map(i64::from)).unwrap_or(0))
     }
 
-    /// Integer coordinates of the finest possible cell that contains `x`; points outside are moved to the border.
+    /// Integer coordinates of the finest possible cell that contains `x`; a point outside the box is moved to its
+    /// border.
     pub fn cell_at(&self, x: &Vector<D>) -> [u32; D] {
         let unit = self.unit();
         std::array::from_fn(|d| {
@@ -166,7 +168,7 @@ impl<const D: usize> Tree<D> {
         })
     }
 
-    /// Calls `f(node)` for every leaf that meets `cube`.
+    /// Calls `f(node)` for every leaf that overlaps `cube`.
     pub fn overlapping(&self, cube: &Bounds<D>, mut f: impl FnMut(u32)) {
         let unit = self.unit();
         let low: [i64; D] = std::array::from_fn(|d| ((cube.min[d] - self.origin[d]) / unit).floor() as i64);
@@ -190,7 +192,7 @@ impl<const D: usize> Tree<D> {
         (0..D).all(|d| i64::from(node.anchor[d]) <= high[d] && i64::from(node.anchor[d]) + size > low[d])
     }
 
-    /// Visits the leaves below cell `k`, which meets the box from `low` to `high`.
+    /// Visits the leaves below cell `k`, which overlaps the box from `low` to `high`.
     fn descend(&self, k: u32, low: &[i64; D], high: &[i64; D], f: &mut impl FnMut(u32)) {
         let node = &self.nodes[k as usize];
         if node.first_child == NONE {
@@ -198,7 +200,7 @@ impl<const D: usize> Tree<D> {
             return;
         }
         let half = 1i64 << (self.max_level - node.level - 1);
-        // bit d: no child on the lower (upper) side of axis d meets the box
+        // bit d: no child on the lower (upper) side of axis d overlaps the box
         let (mut no_lower, mut no_upper) = (0, 0);
         for d in 0..D {
             let middle = i64::from(node.anchor[d]) + half;
@@ -216,7 +218,7 @@ impl<const D: usize> Tree<D> {
         self.root_size / (1u64 << self.max_level) as f64
     }
 
-    /// The leaf or cell with index `k`.
+    /// Cell `k` as a leaf, whether it has children or not.
     pub fn leaf(&self, k: u32) -> Leaf<D> {
         let node = &self.nodes[k as usize];
         let size = self.root_size / (1u64 << node.level) as f64;
@@ -230,7 +232,7 @@ impl<const D: usize> Tree<D> {
         self.nodes[k as usize].anchor
     }
 
-    /// The leaf that contains the finest cell `p`, wrapped along periodic axes.
+    /// The leaf that contains the finest cell `p`, wrapped along periodic axes; `None` outside the box.
     fn find(&self, p: &[i64; D]) -> Option<u32> {
         let mut q = [0u32; D];
         for d in 0..D {
@@ -260,10 +262,10 @@ impl<const D: usize> Tree<D> {
         }
     }
 
-    /// Splits cells until touching leaves differ by one level at most: whatever touches a cell that has children must not be
-    /// larger than that cell. False where that takes more than `most` cells.
+    /// Splits cells until touching leaves differ by at most one level: whatever touches a cell that has children must
+    /// not be larger than that cell. Returns false when this takes more than `most` cells.
     fn balance(&mut self, most: usize) -> bool {
-        // a cell without coarser neighbours gets none when others are split
+        // a cell without coarser neighbours keeps none when other cells are split
         let mut unbalanced = vec![false; self.nodes.len()];
         sweep(&mut unbalanced, |k| self.nodes[k].first_child != NONE && !self.coarser(k as u32).is_empty());
         let mut queue: Vec<u32> = (0..self.nodes.len() as u32).filter(|k| unbalanced[*k as usize]).collect();
@@ -301,7 +303,7 @@ impl<const D: usize> Tree<D> {
     }
 }
 
-/// Place of root `k` among the roots.
+/// Position of root `k` among the roots.
 fn root_cell<const D: usize>(k: u32, roots: &[u32; D]) -> [u32; D] {
     let mut rest = k;
     std::array::from_fn(|d| {
@@ -311,7 +313,7 @@ fn root_cell<const D: usize>(k: u32, roots: &[u32; D]) -> [u32; D] {
     })
 }
 
-/// Calls `f` with each of the 3^D − 1 directions.
+/// Calls `f` with each of the 3^D − 1 directions to adjacent cells.
 fn for_each_direction<const D: usize>(mut f: impl FnMut([i64; D])) {
     for code in 0..3usize.pow(D as u32) {
         let mut rest = code;

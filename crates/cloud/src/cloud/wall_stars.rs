@@ -1,9 +1,9 @@
-//! Which columns of wall layers stand beside one another in space.
+//! Adjacent columns of wall layers in 3-D.
 //!
-//! The feet of the columns are scattered over the surface. Around each of them the others are laid into its tangent plane, at their
-//! distance and in their direction, as far as normals turn by less than 60°; those whose bisectors bound its Voronoi cell there are
-//! beside it, and it beside them: a Delaunay triangulation of the surface, found piece by piece. A cell that no bisector closes
-//! on some side is at a sharp edge.
+//! The feet of the columns are scattered over the surface. The feet around each foot are mapped to its tangent plane,
+//! preserving distance and direction, as long as their normals differ by less than 60°. Adjacent are those whose
+//! bisectors bound the Voronoi cell of the foot in this plane. Adjacency is made mutual: the result is a Delaunay
+//! triangulation of the surface, found locally. A cell that is unbounded on one side lies at a sharp edge.
 use std::collections::BTreeMap;
 
 use super::Transform;
@@ -14,16 +14,16 @@ use crate::math::Vector;
 use crate::math::parallel::sweep;
 use crate::math::square::frame_of;
 
-/// How far a foot looks around, in its spacing: cells of Lloyd's partition have radii below 0.8, and spacings may double.
+/// Search radius in spacings: the cells of Lloyd's partition have radii below 0.8, and spacings may double.
 const REACH: f64 = 2.6;
-/// Feet whose normals differ more (cosine) lie beyond a sharp edge.
+/// Feet whose normals have a cosine below this value are separated by a sharp edge.
 const SMOOTH: f64 = 0.5;
-/// Sides of a cell shorter than this part of the spacing join nothing: four feet on a circle.
+/// Sides of a cell shorter than this fraction of the spacing connect no feet: four feet on a circle.
 const SHORT: f64 = 0.1;
-/// Marks the sides of the square that a cell is cut from.
+/// Marks the sides of the initial square from which a cell is cut.
 const OPEN: usize = usize::MAX;
 
-/// A foot, or the image of one.
+/// The foot of a column, or its image.
 struct Foot<const D: usize> {
     x: Vector<D>,
     normal: Vector<D>,
@@ -31,7 +31,7 @@ struct Foot<const D: usize> {
     image: Option<u8>,
 }
 
-/// Axes of the columns over scattered feet, and what is beside each.
+/// Axes of the columns over scattered feet, and the adjacent columns of each.
 pub(super) fn stars<const D: usize>(placed: &Placed<D>, transforms: &[Transform<D>]) -> Around<D> {
     let axes: Vec<[Vector<D>; D]> = placed.interface.iter().map(|w| frame_of(&w.normal)).collect();
     let feet = feet(placed, transforms);
@@ -72,7 +72,7 @@ fn feet<const D: usize>(placed: &Placed<D>, transforms: &[Transform<D>]) -> Vec<
     own.chain(images).collect()
 }
 
-/// What stands beside foot `w`, with the way to it in lengths, and whether its cell is open.
+/// Adjacent columns of foot `w` with the offsets to them, and whether its cell is unbounded.
 fn star<const D: usize>(
     feet: &[Foot<D>],
     w: usize,
@@ -100,14 +100,14 @@ fn star<const D: usize>(
     (sides.iter().filter(|k| **k != OPEN).map(beside).collect(), sides.contains(&OPEN))
 }
 
-/// An offset laid into the tangent plane, with its length.
+/// An offset mapped to the tangent plane, with its length preserved.
 fn way<const D: usize>(d: &Vector<D>, axes: &[Vector<D>; D]) -> [f64; 2] {
     let [a, b] = [d.dot(&axes[0]), d.dot(&axes[1])];
     let flat = a.hypot(b).max(f64::MIN_POSITIVE);
     [a, b].map(|c| c * d.norm() / flat)
 }
 
-/// Lets every column that one sees see that one as well.
+/// Makes adjacency mutual.
 fn answer<const D: usize>(
     found: &mut [(Vec<Beside>, bool)],
     placed: &Placed<D>,
@@ -135,7 +135,8 @@ fn answer<const D: usize>(
     }
 }
 
-/// A convex polygon around the origin: corners, each with what bounds it from there to the next.
+/// A convex polygon around the origin, given by its corners; each has the label of the side from there to the next
+/// corner.
 struct VoronoiCell {
     corners: Vec<([f64; 2], usize)>,
 }
@@ -147,7 +148,7 @@ impl VoronoiCell {
         Self { corners: corners.map(|c| (c, OPEN)).to_vec() }
     }
 
-    /// Cuts off what is nearer to `p` than to the origin.
+    /// Cuts off the region that is nearer to `p` than to the origin.
     fn cut(&mut self, p: [f64; 2], label: usize) {
         let beyond = |x: &[f64; 2]| x[0] * p[0] + x[1] * p[1] - 0.5 * (p[0] * p[0] + p[1] * p[1]);
         let mut left = Vec::with_capacity(self.corners.len() + 1);
@@ -170,7 +171,7 @@ impl VoronoiCell {
         self.corners = left;
     }
 
-    /// What bounds it by more than a length, in order around it.
+    /// Labels of the sides longer than `length`, in order around the polygon.
     fn sides(&self, length: f64) -> Vec<usize> {
         let n = self.corners.len();
         let long = |k: &usize| {

@@ -1,21 +1,21 @@
-//! Boxes along slivers.
+//! Oriented bounding boxes for slivers.
 //!
-//! Triangles of CAD files are often long and narrow: those of a cone run from its tip to its base. Boxes along the axes of coordinates
-//! around them overlap by hundreds, so that a search in a tree of such boxes visits most of the surface. A box that lies along the
-//! slivers, with axes of its own, holds little more than them (Gottschalk, Lin and Manocha, "OBBTree", SIGGRAPH 1996). It is used to
-//! pass over what cannot be met, never to choose, so that what is found stays the same.
+//! Triangles of CAD files are often long and narrow; those of a cone extend from its tip to its base. Axis-aligned
+//! boxes around them overlap by hundreds, so that a search in a tree of such boxes visits most of the surface. An
+//! oriented box along the slivers fits them closely (Gottschalk, Lin and Manocha, "OBBTree", SIGGRAPH 1996). It is used
+//! only to skip candidates, so that results do not change.
 use super::simplex::{self, Corners};
 use crate::math::{Bounds, Vector};
 
-/// Longest side over height of a triangle from which it is a sliver, and length over width of a bar: around what is rounder, a box
-/// along the axes of coordinates does as well.
+/// Aspect ratio above which a triangle is a sliver, and above which an oriented box is used; an axis-aligned box
+/// suffices for rounder shapes.
 const SLENDER: f64 = 4.0;
-/// Part of the coordinates by which a bar is larger than what it holds, for their rounding.
+/// Enlargement of a box relative to the coordinates, which covers their round-off.
 const SLACK: f64 = 1e-12;
-/// What rounding leaves of unit vectors, and of angles between axes.
+/// Round-off of unit vectors and of angles between axes.
 const ROUNDING: f64 = 1e-12;
 
-/// A box with axes of its own around slivers that lie side by side.
+/// An oriented box around adjacent slivers.
 #[derive(Clone, Debug)]
 pub(super) struct Bar<const D: usize> {
     centre: Vector<D>,
@@ -24,7 +24,7 @@ pub(super) struct Bar<const D: usize> {
 }
 
 impl<const D: usize> Bar<D> {
-    /// The bar around triangles; `None` where they are no slivers side by side.
+    /// The oriented box around triangles; `None` where they are not adjacent slivers.
     pub(super) fn around(elements: impl Iterator<Item = Corners<D>> + Clone) -> Option<Self> {
         let axes = axes(elements.clone())?;
         let origin = elements.clone().next()?[0];
@@ -40,10 +40,10 @@ impl<const D: usize> Bar<D> {
         slender.then(|| Self { centre, axes, half: half + Vector::splat(SLACK * size) })
     }
 
-    /// Square of the distance from `x`, from below.
+    /// Lower bound of the squared distance from `x`.
     #[inline]
     pub(super) fn distance_squared(&self, x: &Vector<D>) -> f64 {
-        // axes are perpendicular but for rounding
+        // the axes are orthogonal up to round-off
         const BELOW: f64 = 1.0 - 1e-9;
         let at = self.local(&(*x - self.centre));
         BELOW * (0..D).map(|k| (at[k].abs() - self.half[k]).max(0.0)).map(|beyond| beyond * beyond).sum::<f64>()
@@ -66,8 +66,8 @@ impl<const D: usize> Bar<D> {
     }
 }
 
-/// Axes of a bar: along the longest sides of the triangles, across them and normal to them; `None` in the plane, or where one
-/// of the triangles is no sliver.
+/// Axes of a box: along the longest sides of the triangles, across them, and normal to them; `None` in 2-D, or where a
+/// triangle is not a sliver.
 fn axes<const D: usize>(elements: impl Iterator<Item = Corners<D>>) -> Option<[Vector<D>; D]> {
     if D != 3 {
         return None;
@@ -83,7 +83,7 @@ fn axes<const D: usize>(elements: impl Iterator<Item = Corners<D>>) -> Option<[V
     }
     let first = along.unit();
     let normal_to_first = |v: &Vector<D>| (*v - first * v.dot(&first)).unit();
-    // twice, for what round-off leaves of the first time
+    // twice, to remove the round-off of the first orthogonalisation
     let normal = normal_to_first(&normal_to_first(&area));
     let across = simplex::cross(&normal, &first);
     let unit = |v: &Vector<D>| (v.norm() - 1.0).abs() < ROUNDING;

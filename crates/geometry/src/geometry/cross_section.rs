@@ -1,14 +1,14 @@
-//! Cross sections: where a plane across the span cuts the walls of bodies in space.
+//! Cross-sections: intersections of the walls of 3-D bodies with planes normal to the span.
 //!
-//! A point of a section is named by the side that it is on and by x/c, which counts from the foremost to the rearmost point of all
-//! that the plane cuts. A face that looks downstream, the base of a blunt trailing edge, is on neither side.
+//! A point of a section is identified by its side and by x/c, counted from the foremost to the rearmost point of the
+//! section. A face that looks downstream, such as the base of a blunt trailing edge, belongs to neither side.
 use super::Surface;
 use crate::math::Vector;
 
-/// Component of a normal along x from which on it is that of a base.
+/// Component of the normal along x above which a face is a base.
 const BASE: f64 = 0.9;
 
-/// Pieces of a section, one for each facet that the plane cuts.
+/// A section as line segments, one for each facet that the plane cuts.
 #[derive(Clone, Debug, Default)]
 pub struct CrossSection {
     pieces: Vec<[Point; 2]>,
@@ -16,7 +16,7 @@ pub struct CrossSection {
     chord: f64,
 }
 
-/// A point of a wall and the normal there, out of the body.
+/// A point of a wall with its outward normal.
 #[derive(Clone, Copy, Debug)]
 struct Point {
     x: Vector<3>,
@@ -24,7 +24,7 @@ struct Point {
 }
 
 impl Surface<3> {
-    /// The section in the plane y = `at`; `None` where that cuts nothing.
+    /// The section in the plane y = `at`; `None` where the plane cuts nothing.
     pub fn cross_section(&self, at: f64) -> Option<CrossSection> {
         let pieces: Vec<[Point; 2]> = (0..self.elements.len()).filter_map(|e| self.piece(e as u32, at)).collect();
         let ends = pieces
@@ -54,7 +54,7 @@ impl CrossSection {
         self.chord
     }
 
-    /// The point at x/c on the upper or lower side and the normal there; `None` where that side has none.
+    /// Point and normal at x/c on the upper or lower side; `None` where this side has no such point.
     pub fn at(&self, x_c: f64, upper: bool) -> Option<(Vector<3>, Vector<3>)> {
         let x = self.front + x_c * self.chord;
         let away = |piece: &&[Point; 2]| {

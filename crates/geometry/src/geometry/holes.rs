@@ -1,27 +1,28 @@
-//! Holes of a surface: those whose shape leaves no doubt are closed, others are listed.
+//! Holes of a surface: holes of unambiguous shape are closed, others are reported.
 //!
-//! Small holes are closed by a fan, flat ones (a root that is open at a plane of symmetry, a tip, a base) by triangles in their plane, and
-//! narrow ones (the gap of an open trailing edge) by the triangles of least area between the vertices of their rim ([`super::polygon`]).
+//! Small holes are closed by a fan, flat ones (an open root at a plane of symmetry, a tip, a base) by triangles in
+//! their plane, and narrow ones (the gap of an open trailing edge) by the triangles of least area between the vertices
+//! of their rim ([`super::polygon`]).
 use std::collections::BTreeMap;
 
 use super::shell::{Facet, Shell, at, facets, root, runs, unite};
 use super::{polygon, simplex};
 use crate::math::{Bounds, Vector};
 
-/// Greatest extent of a hole that is closed, over the diagonal of the body.
+/// Greatest extent of a small hole relative to the diagonal of the body.
 const SMALL: f64 = 0.05;
-/// Most edges of such a hole.
+/// Greatest number of edges of a small hole.
 const FEW: usize = 32;
-/// Greatest area of a narrow hole, over the square of the length of its rim: that of a disc has 0.08.
+/// Greatest area of a narrow hole relative to the squared length of its rim; a disc has 0.08.
 const NARROW: f64 = 0.01;
-/// Greatest area of a narrow hole, over that of the part around it.
+/// Greatest area of a narrow hole relative to that of the surrounding part.
 const SLIT: f64 = 0.05;
-/// Greatest area of a flat hole, over that of the part around it: closing a sheet on itself bounds no volume.
+/// Greatest area of a flat hole relative to that of the surrounding part: a sheet closed by itself encloses no volume.
 const FACE: f64 = 0.9;
-/// Holes that are listed by place.
+/// Greatest number of holes that are listed in a message.
 const LISTED: usize = 20;
 
-/// Closes holes whose shape leaves no doubt. The shell is oriented.
+/// Closes holes of unambiguous shape. The shell must be oriented.
 pub(super) fn fill(file: &str, shell: &mut Shell<3>, notes: &mut Vec<String>) {
     let size = Bounds::around(&shell.vertices).extent().norm();
     let all = facets(&shell.elements);
@@ -53,7 +54,8 @@ pub(super) fn fill(file: &str, shell: &mut Shell<3>, notes: &mut Vec<String>) {
     }
 }
 
-/// Closes a flat or a narrow hole in a part of this `surface`, and tells which it is; others stay open.
+/// Closes a flat or narrow hole in a part of this `surface` and returns which kind it is; `None` when the hole stays
+/// open.
 fn close_large(shell: &mut Shell<3>, ring: &[(u32, u32)], surface: f64) -> Option<&'static str> {
     let rim: Vec<Vector<3>> = ring.iter().map(|(v, _)| shell.vertices[*v as usize]).collect();
     let area = |triangles: &Vec<[usize; 3]>| {
@@ -71,7 +73,7 @@ fn close_large(shell: &mut Shell<3>, ring: &[(u32, u32)], surface: f64) -> Optio
     Some(kind)
 }
 
-/// Adds the triangles that close a ring of vertices, each with the element beside the edge that leaves it.
+/// Adds triangles that close a ring of vertices, each with the element at the edge that starts there.
 fn close(shell: &mut Shell<3>, ring: &[(u32, u32)]) {
     let n = ring.len();
     let tag = |shell: &Shell<3>, e: u32| shell.tags.get(e as usize).copied();
@@ -90,7 +92,7 @@ fn close(shell: &mut Shell<3>, ring: &[(u32, u32)]) {
     }
 }
 
-/// Closed rings of open edges without a vertex twice, against the sense of the elements beside them.
+/// Closed rings of open edges without repeated vertices, opposite to the orientation of the adjacent elements.
 fn rings(shell: &Shell<3>, open: &[Facet], part: &[u32]) -> Vec<Vec<(u32, u32)>> {
     let mut next: BTreeMap<(u32, u32), Vec<(u32, u32)>> = BTreeMap::new();
     for f in open {
@@ -108,7 +110,7 @@ fn rings(shell: &Shell<3>, open: &[Facet], part: &[u32]) -> Vec<Vec<(u32, u32)>>
             }
             place.insert(v, path.len());
             path.push((v, element));
-            // where holes meet at a vertex, each is a ring of its own
+            // where holes touch at a vertex, each forms a ring of its own
             if let Some(&k) = place.get(&to) {
                 let ring = path.split_off(k);
                 ring.iter().for_each(|(w, _)| {
@@ -122,7 +124,7 @@ fn rings(shell: &Shell<3>, open: &[Facet], part: &[u32]) -> Vec<Vec<(u32, u32)>>
     rings
 }
 
-/// All holes with place, extent and number of edges, largest first.
+/// A list of all holes with position, extent and number of edges, largest first.
 pub(super) fn told(shell: &Shell<3>, open: &[Facet]) -> String {
     let mut group: Vec<u32> = (0..shell.vertices.len() as u32).collect();
     open.iter().for_each(|f| unite(&mut group, f.vertices[0], f.vertices[1]));

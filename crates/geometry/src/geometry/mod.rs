@@ -1,13 +1,14 @@
-//! Surfaces: from a case file's bodies to one discretised surface that everything else uses.
+//! Geometry: from the bodies of a case to one discretised surface.
 //!
-//! Every input becomes a [`Shell`], segments in 2-D or triangles in 3-D with outward normals: NACA formulas, airfoil
-//! coordinate files, polygons, circles, ellipses, spheres, boxes, STL, OBJ and PLY files. Shells are placed and joined to a [`Surface`],
-//! which answers nearest-point, crossing and inside questions through a tree of boxes.
+//! Every input is converted to a [`Shell`] of segments in 2-D or triangles in 3-D with outward normals: NACA formulas,
+//! airfoil coordinate files, polygons, circles, ellipses, spheres, boxes, STL, OBJ and PLY files. Shells are placed and
+//! combined into a [`Surface`], which answers queries for the nearest point, for crossings and for the inside through a
+//! bounding-volume tree.
 //!
-//! Bodies in space that overlap, and parts of one file, are clipped at their intersection and closed.
+//! Bodies in 3-D that overlap, and overlapping parts of one file, are clipped at their intersection and united.
 //!
-//! Limits: a surface must bound a volume (thin sheets and large holes are refused), bodies in the plane must not overlap.
-//! Only [`load_surface`] opens files; all readers take any input.
+//! Limits: a surface must enclose a volume (thin sheets and large holes are rejected); bodies in 2-D must not overlap.
+//! Only [`load_surface`] opens files; the readers accept any input and never panic.
 mod airfoil;
 mod bar;
 mod chord_line;
@@ -53,34 +54,34 @@ use std::fs::File;
 use std::io;
 use std::path::Path;
 
-/// Turning angle of a polygon's sharp corners, radians (5°): whoever lists corners means them.
+/// Turning angle above which a corner of a polygon is sharp [rad] (5°); the corners of a polygon are intended.
 const POLYGON_CREASE: f64 = 5.0 * PI / 180.0;
 
-/// Distance over the size of a body below which another one touches it.
+/// Distance relative to the size of a body below which another one touches it.
 const TOUCHING: f64 = 1e-9;
 
-/// Why a surface could not be made.
+/// Reason why a surface could not be constructed.
 #[derive(Debug, thiserror::Error)]
 pub enum GeometryError {
     /// A file could not be read.
     #[error("cannot read `{file}`: {source}\nhint: paths are relative to the case file")]
     Open {
-        /// File as named in the case.
+        /// Name of the file in the case.
         file: String,
-        /// Reason.
+        /// Cause.
         source: io::Error,
     },
-    /// A shape is not usable.
+    /// A shape cannot be used.
     #[error("{place}: {what}\nhint: {hint}")]
     Refused {
-        /// File and line, or body.
+        /// File and line, or name of the body.
         place: String,
-        /// What is wrong, with the value.
+        /// Description of the problem, with the value.
         what: String,
-        /// What to do about it.
+        /// Remedy.
         hint: String,
     },
-    /// Several bodies or files are not usable.
+    /// Several bodies or files cannot be used.
     #[error("{}", .0.iter().map(ToString::to_string).collect::<Vec<_>>().join("\n\n"))]
     Several(Vec<Self>),
 }
@@ -90,13 +91,13 @@ impl GeometryError {
         Self::Refused { place: place.into(), what: what.into(), hint: hint.into() }
     }
 
-    /// One of several, or all of them together; `None` where there are none.
+    /// A single error, or several combined; `None` where there are none.
     fn all(found: Vec<Self>) -> Option<Self> {
         let mut flat: Vec<Self> = found.into_iter().flat_map(Self::parts).collect();
         if flat.len() < 2 { flat.pop() } else { Some(Self::Several(flat)) }
     }
 
-    /// The reasons one by one.
+    /// The individual errors.
     pub fn parts(self) -> Vec<Self> {
         match self {
             Self::Several(all) => all,
@@ -105,7 +106,7 @@ impl GeometryError {
     }
 }
 
-/// A shell of either dimension.
+/// A shell of dimension 2 or 3.
 enum AnyShell {
     Plane(Shell<2>),
     Space(Shell<3>),
@@ -132,7 +133,8 @@ pub fn dimension(case: &Case) -> u8 {
     case.dimension.unwrap_or_else(|| case.bodies.first().map_or(2, of))
 }
 
-/// The surface of all bodies, and notes on what was assumed or mended. Files are looked up in `folder`.
+/// The surface of all bodies, and notes about assumptions and repairs. `folder` is the folder of the files that the
+/// bodies name. Fails with one error for each body that cannot be used.
 pub fn load_surface<const D: usize>(
     bodies: &[Body],
     folder: &Path,
@@ -172,7 +174,7 @@ pub fn load_surface<const D: usize>(
     Ok((surface, notes))
 }
 
-/// The shells of all bodies with their names, as drawn; every one that is not usable is told.
+/// The shells of all bodies with their names, before union; reports every body that cannot be used.
 fn load_shells(
     bodies: &[Body],
     folder: &Path,
@@ -189,7 +191,7 @@ fn load_shells(
     GeometryError::all(refused).map_or(Ok(shells), Err)
 }
 
-/// The skin of bodies that meet, or of one that meets none.
+/// The outer surface of a group of bodies that intersect, or of a single body.
 fn skin<const D: usize>(
     group: &[usize],
     bodies: &[Body],
@@ -301,7 +303,7 @@ fn load_shell(name: &str, body: &Body, folder: &Path, notes: &mut Vec<String>) -
     })
 }
 
-/// The section at one end of a wing, by its digits or by its file; `None` where neither is given.
+/// The section at one end of a wing, from its NACA designation or its file; `None` where neither is given.
 fn section_of(
     naca: &Option<Naca>,
     file: &Option<String>,
@@ -318,12 +320,12 @@ fn section_of(
     }
 }
 
-/// A file that is looked up in `folder`.
+/// Opens a file in `folder`.
 fn opened(folder: &Path, file: &str) -> Result<File, GeometryError> {
     open_regular(&folder.join(file)).map_err(|source| GeometryError::Open { file: file.to_string(), source })
 }
 
-/// What `make` makes of whether sides are straight; every corner between straight ones is sharp.
+/// The shell that `make` returns for straight or smooth sides; every corner between straight sides is sharp.
 fn creased(sides: ProfileSides, make: impl Fn(bool) -> Shell<3>) -> Shell<3> {
     match sides {
         ProfileSides::Smooth => make(false),
@@ -331,7 +333,7 @@ fn creased(sides: ProfileSides, make: impl Fn(bool) -> Shell<3>) -> Shell<3> {
     }
 }
 
-/// The text of a file of coordinates, with `\n` at the ends of all lines.
+/// The text of a coordinate file, with all line ends converted to `\n`.
 fn plain(file: &str, bytes: &[u8]) -> Result<String, GeometryError> {
     let broken = |_| GeometryError::refused(file, "is broken UTF-16 text", "save it as UTF-8 or ASCII text");
     numbers_of(bytes).map_err(broken).map(|text| text.replace("\r\n", "\n").replace('\r', "\n"))
@@ -344,7 +346,7 @@ fn positive(place: &str, key: &str, value: f64) -> Result<f64, GeometryError> {
     Err(GeometryError::refused(place, format!("`{key}` is {value}"), "use a positive length"))
 }
 
-/// Refuses bodies in the plane that overlap or touch; names all pairs that do.
+/// Rejects overlapping or touching bodies in 2-D; the error names all pairs.
 fn refuse_overlap<const D: usize>(shells: &[(String, Shell<D>)]) -> Result<(), GeometryError> {
     let boxes: Vec<Bounds<D>> = shells.iter().map(|(_, shell)| Bounds::around(&shell.vertices)).collect();
     let near = |[a, b]: &[usize; 2]| {
@@ -384,7 +386,7 @@ fn touch<const D: usize>(a: &(String, Shell<D>), b: &(String, Shell<D>)) -> bool
     a.meets(&b)
 }
 
-/// Bodies in groups of those that overlap or touch, directly or through others.
+/// Groups of bodies that overlap or touch, directly or through others.
 fn meeting<const D: usize>(shells: &[(String, Shell<D>)]) -> Vec<Vec<usize>> {
     let mut group: Vec<u32> = (0..shells.len() as u32).collect();
     let alone: Vec<Surface<D>> = shells.iter().map(|body| Surface::new(std::slice::from_ref(body))).collect();
@@ -399,12 +401,12 @@ fn meeting<const D: usize>(shells: &[(String, Shell<D>)]) -> Vec<Vec<usize>> {
 }
 
 impl AnyShell {
-    /// The shell of a plane.
+    /// The shell, if it is two-dimensional.
     fn plane(&self) -> Option<&Shell<2>> {
         if let Self::Plane(shell) = self { Some(shell) } else { None }
     }
 
-    /// The shell when it has `D` dimensions.
+    /// The shell, if its dimension is `D`.
     fn in_dimension<const D: usize>(self) -> Option<Shell<D>> {
         match self {
             Self::Plane(shell) => shell.cast(),

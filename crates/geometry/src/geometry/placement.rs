@@ -1,17 +1,17 @@
-//! Placement of bodies: scale, rotate about the origin of the shape, translate.
+//! Placement of bodies: scaling, rotation about the origin of the shape, translation.
 //!
-//! In 2-D a positive angle lifts the nose when the flow comes along +x, which is a clockwise turn. In 3-D the angles turn
-//! about x, then y, then z, right-handed: a positive turn about y lifts the nose (z up).
+//! In 2-D a positive angle raises the nose for flow along +x, which is a clockwise rotation. In 3-D the rotations are
+//! about x, then y, then z, right-handed: a positive rotation about y raises the nose (z up).
 use super::GeometryError;
 use super::shell::{Exact, Shell};
 use crate::case::Placement;
 use crate::math::{Bounds, Vector};
 
-/// Greatest distance of a body from the origin, in lengths of its own: beyond it, coordinates in double precision hold fewer than
-/// eight digits of its shape.
+/// Greatest distance of a body from the origin, in body lengths: farther away, coordinates in double precision
+/// represent its shape with fewer than eight digits.
 const FARTHEST: f64 = 1e8;
 
-/// Moves `shell` where `placement` says; `body` names it in messages.
+/// Applies `placement` to `shell`; `body` is its name for messages.
 pub(super) fn place<const D: usize>(
     body: &str,
     shell: &mut Shell<D>,
@@ -55,17 +55,17 @@ pub(super) fn place<const D: usize>(
     Ok(())
 }
 
-/// Where a point of a shape lies once that is placed.
+/// Position of a point of a shape after placement.
 pub(super) fn placed<const D: usize>(x: &Vector<D>, placement: &Placement) -> Vector<D> {
     turned(x, placement) * placement.scale + shift(placement)
 }
 
-/// Direction of a shape once that is placed.
+/// Direction of a shape after placement.
 pub(super) fn turned<const D: usize>(x: &Vector<D>, placement: &Placement) -> Vector<D> {
     rotated(x, &placement.rotate.iter().map(|a| a.0).collect::<Vec<_>>())
 }
 
-/// How far the origin of a shape is moved.
+/// Translation of the origin of a shape.
 pub(super) fn shift<const D: usize>(placement: &Placement) -> Vector<D> {
     Vector::from_fn(|d| placement.translate.get(d).map_or(0.0, |l| l.0))
 }
@@ -73,7 +73,7 @@ pub(super) fn shift<const D: usize>(placement: &Placement) -> Vector<D> {
 fn rotated<const D: usize>(x: &Vector<D>, angles: &[f64]) -> Vector<D> {
     let mut x = *x;
     for (axis, angle) in angles.iter().enumerate() {
-        // In the plane the turn is clockwise, in space right-handed about `axis`.
+        // clockwise in 2-D, right-handed about `axis` in 3-D
         let (i, j, angle) = if D == 2 { (0, 1, -angle) } else { ((axis + 1) % 3, (axis + 2) % 3, *angle) };
         let (sin, cos) = angle.sin_cos();
         (x[i], x[j]) = (cos * x[i] - sin * x[j], sin * x[i] + cos * x[j]);

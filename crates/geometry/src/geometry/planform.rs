@@ -3,7 +3,7 @@
 //! The chord c at a station of the span is the length along x of what lies under or above it; with the area S = ∫ c dy the mean
 //! aerodynamic chord is ∫ c² dy / S, and its leading edge is at ∫ c (x_le, y, z) dy / S.
 use super::Surface;
-use crate::math::sweep::sweep_each;
+use crate::math::parallel::sweep_each;
 use crate::math::{Bounds, Vector};
 
 /// Stations along the span.

@@ -1,21 +1,22 @@
-//! Triangles of a polygon in space.
+//! Triangulation of a polygon in 3-D.
 //!
-//! A convex polygon is a fan about its first corner. One that lies in a plane is divided there: the constrained Delaunay triangles inside
-//! it, which overlap nowhere. The rim of a narrow gap lies in no plane; its triangles are those of least area, found by dynamic programming
-//! over the polygon (G. Barequet and M. Sharir, *Filling gaps in the boundary of a polyhedron*, Computer Aided Geometric Design 12, 1995). A
-//! small part of the squares of sides prefers short ones where areas are the same.
+//! A convex polygon is divided into a fan about its first corner, and a plane one by constrained Delaunay triangulation
+//! inside it. The rim of a narrow gap is not plane; its triangulation of least area is found by dynamic programming (G.
+//! Barequet and M. Sharir, *Filling gaps in the boundary of a polyhedron*, Computer Aided Geometric Design 12, 1995). A
+//! small weight of the squared sides prefers short sides among equal areas.
 use super::simplex;
 use crate::math::triangulation::triangulate;
 use crate::math::{Bounds, Vector};
 
-/// Greatest distance of the corners of a flat polygon from a plane, over their extent.
+/// Greatest distance of the corners of a plane polygon from its plane, relative to their extent.
 const FLAT: f64 = 0.01;
-/// Weight of the squares of sides beside areas.
+/// Weight of squared side lengths relative to areas.
 const SHORT: f64 = 1e-3;
-/// Most corners of a polygon whose triangles of least area are sought: the work grows with their cube.
+/// Greatest number of corners for the triangulation of least area, whose cost is proportional to their cube.
 const MANY: usize = 1000;
 
-/// Triangles of a polygon without holes, corners by their number, in its sense; `None` for one that is neither convex nor flat nor small.
+/// Triangles of a polygon without holes as corner indices, with its orientation; `None` when it is neither convex nor
+/// plane nor small.
 pub(super) fn divided(points: &[Vector<3>]) -> Option<Vec<[usize; 3]>> {
     let fan: Vec<[usize; 3]> = (1..points.len().saturating_sub(1)).map(|k| [0, k, k + 1]).collect();
     let normal = normal(points);
@@ -26,14 +27,14 @@ pub(super) fn divided(points: &[Vector<3>]) -> Option<Vec<[usize; 3]>> {
     flat(points).or_else(|| least_area(points))
 }
 
-/// Triangles of a polygon that lies in a plane and does not cross itself there.
+/// Triangulation of a plane polygon; `None` when it is not plane or crosses itself.
 pub(super) fn flat(points: &[Vector<3>]) -> Option<Vec<[usize; 3]>> {
     let normal = normal(points).unit();
     let bounds = Bounds::around(points);
     let centre = points.iter().fold(Vector::ZERO, |sum, x| sum + *x) * (1.0 / points.len() as f64);
     let depth = points.iter().map(|x| (*x - centre).dot(&normal).abs()).fold(0.0, f64::max);
     let size = bounds.extent().norm();
-    // also where the normal is not finite
+    // also true where the normal is not finite
     if !(depth <= FLAT * size && size > 0.0) {
         return None;
     }
@@ -49,11 +50,11 @@ pub(super) fn flat(points: &[Vector<3>]) -> Option<Vec<[usize; 3]>> {
     };
     let triangles: Vec<[usize; 3]> =
         triangulate(&plane, &sides).into_iter().filter(inside).map(|t| t.map(|k| k as usize)).collect();
-    // a polygon that crosses itself has other numbers of triangles
+    // a self-intersecting polygon has another number of triangles
     (triangles.len() == n - 2).then_some(triangles)
 }
 
-/// Triangles of least area between the corners of a polygon.
+/// Triangulation of least area between the corners of a polygon.
 pub(super) fn least_area(rim: &[Vector<3>]) -> Option<Vec<[usize; 3]>> {
     let n = rim.len();
     if n > MANY {
@@ -64,7 +65,7 @@ pub(super) fn least_area(rim: &[Vector<3>]) -> Option<Vec<[usize; 3]>> {
         let area = simplex::area_vector(&[rim[i], rim[m], rim[j]]).norm();
         area + SHORT * (side(i, m) + side(m, j) + side(i, j))
     };
-    // least weight between the vertices i and j, and the third vertex on their side
+    // least weight between the vertices i and j, and the third vertex of the triangle at this side
     let mut best = vec![(0.0_f64, 0_u32); n * n];
     for gap in 2..n {
         for i in 0..n - gap {
@@ -88,7 +89,7 @@ pub(super) fn least_area(rim: &[Vector<3>]) -> Option<Vec<[usize; 3]>> {
     Some(triangles)
 }
 
-/// Area vector of a polygon (Newell), which a flat one is normal to.
+/// Area vector of a polygon (Newell), which is normal to a plane polygon.
 fn normal(points: &[Vector<3>]) -> Vector<3> {
     let fan = (1..points.len().saturating_sub(1)).map(|k| simplex::area_vector(&[points[0], points[k], points[k + 1]]));
     fan.fold(Vector::ZERO, |sum, a| sum + a)

@@ -1,24 +1,25 @@
-//! Plane outlines as sides from the nose to the rear, sampled alike whatever the outline: what wings and bodies of revolution are made
-//! from.
+//! Plane outlines as two sides from the nose to the rear, sampled at common positions, for the construction of wings
+//! and bodies of revolution.
 use super::shell::Shell;
 use crate::math::Vector;
 
-/// Corners that lie within this part of the chord from the rear belong to the trailing edge.
+/// Distance from the rear, as a fraction of the chord, within which a corner belongs to the trailing edge.
 const REAR: f64 = 0.1;
 
-/// Both sides of a section, from the nose to the rear.
+/// Upper and lower side of a section, from the nose to the rear.
 pub(super) struct Sides {
     /// Upper side.
     pub(super) upper: Vec<Vector<2>>,
-    /// Lower side; the first point is that of the upper one, the last one as well where the section ends sharply.
+    /// Lower side; its first point is that of the upper side, and its last one too where the section ends sharply.
     pub(super) lower: Vec<Vector<2>>,
 }
 
-/// Smooth pieces of a profile in the plane, or of one with two measures of the section, one after another from the nose to the rear.
+/// Smooth pieces of a profile, one after another from the nose to the rear; the points may have one or two measures of
+/// the section.
 pub(super) struct Chain<const D: usize>(pub(super) Vec<Vec<Vector<D>>>);
 
 impl Sides {
-    /// The sides of an outline that turns counter-clockwise, at the parts `places` of their lengths, which begin with 0 and end with 1.
+    /// The sides of a counter-clockwise outline at the fractions `places` of their lengths, from 0 to 1.
     pub(super) fn of(outline: &Shell<2>, places: &[f64]) -> Self {
         let points = &outline.vertices;
         let n = points.len();
@@ -49,9 +50,9 @@ impl Sides {
 }
 
 impl<const D: usize> Chain<D> {
-    /// Some `n` points, on each piece in proportion to its length and gathered at its ends.
+    /// About `n` points, distributed over the pieces in proportion to their lengths and clustered at their ends.
     pub(super) fn resampled(&self, n: usize) -> Vec<Vector<D>> {
-        /// Fewest panels of a piece.
+        /// Minimum number of panels of a piece.
         const FEWEST: f64 = 8.0;
         let length = |piece: &Vec<Vector<D>>| piece.windows(2).map(|p| (p[1] - p[0]).norm()).sum::<f64>();
         let whole: f64 = self.0.iter().map(length).sum();
@@ -65,12 +66,12 @@ impl<const D: usize> Chain<D> {
     }
 }
 
-/// Parts of a length that gather at its ends, `n` panels.
+/// Fractions of a length that are clustered at its ends, for `n` panels.
 pub(super) fn clustered(n: usize) -> Vec<f64> {
     (0..=n).map(|k| 0.5 - 0.5 * (std::f64::consts::PI * k as f64 / n as f64).cos()).collect()
 }
 
-/// The points of a chain at parts of its length, which begin with 0 and end with 1.
+/// The points of a chain at the fractions `places` of its length, from 0 to 1.
 fn at<const D: usize>(chain: &[Vector<D>], places: &[f64]) -> Vec<Vector<D>> {
     let mut lengths = vec![0.0];
     for pair in chain.windows(2) {

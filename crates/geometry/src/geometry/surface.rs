@@ -1,8 +1,8 @@
-//! The discretised surface of all bodies: what the cloud of particles is built around.
+//! The discretised surface of all bodies, around which the cloud of particles is built.
 //!
 //! A surface consists of segments (2-D) or triangles (3-D) with outward unit normals at their corners. It answers four
-//! questions quickly: which point is nearest, does a segment cross the surface, is a point inside a body, and what are the
-//! exact place, normal and curvature at a point.
+//! queries: the nearest point, whether a segment crosses the surface, whether a point lies inside a body, and the exact
+//! position, normal and curvature at a point.
 //!
 //! Inside means that the generalised winding number exceeds one half (Jacobson, Kavan, Sorkine-Hornung 2013), which also
 //! holds for surfaces with gaps. Area and volume follow from the area vectors: V = Σ x·A / D.
@@ -12,10 +12,10 @@ use super::tree::Tree;
 use super::{TOUCHING, simplex};
 use crate::math::{Bounds, Vector};
 
-/// One segment (2-D) or triangle (3-D).
+/// A segment (2-D) or triangle (3-D) of the surface.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Element<const D: usize> {
-    /// Vertex indices, counter-clockwise seen from the fluid (2-D: along a counter-clockwise outline).
+    /// Vertex indices, counter-clockwise when viewed from the fluid (2-D: along a counter-clockwise outline).
     pub vertices: [u32; D],
     /// Outward unit normals at the corners: continuous across smooth facets, different on both sides of a crease.
     pub normals: [Vector<D>; D],
@@ -34,29 +34,29 @@ pub struct Nearest<const D: usize> {
     pub normal: Vector<D>,
     /// Distance from the query point.
     pub distance: f64,
-    /// Element.
+    /// Index of the element.
     pub element: u32,
     /// Barycentric weights of `point` in the element.
     pub weights: [f64; D],
 }
 
-/// A point of the shape that the elements stand for.
+/// A point of the shape that the elements approximate.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Projection<const D: usize> {
-    /// Point.
+    /// Position.
     pub point: Vector<D>,
     /// Outward unit normal.
     pub normal: Vector<D>,
-    /// Normal curvature of largest magnitude, positive where the body is convex; zero on a flat wall.
+    /// Normal curvature of largest magnitude [1/length], positive where the body is convex; zero on a flat wall.
     pub curvature: f64,
 }
 
-/// The skin of one body, or of several that meet.
+/// The outer surface of one body, or of several that intersect.
 #[derive(Clone, Debug)]
 pub struct Skin<const D: usize> {
-    /// Its elements.
+    /// Vertices and elements.
     pub shell: Shell<D>,
-    /// Number of the body that each element is of; one number where all are of the same.
+    /// Body to which each element belongs; a single entry when all belong to the same body.
     pub owner: Vec<u16>,
 }
 
@@ -69,36 +69,36 @@ pub struct Surface<const D: usize> {
     pub elements: Vec<Element<D>>,
     /// Names of the bodies.
     pub bodies: Vec<String>,
-    /// Names of tagged parts; a body without parts is its own tag.
+    /// Names of tagged parts; a body without parts has its own name as the tag.
     pub tags: Vec<String>,
-    /// Smallest radius of curvature of every element, infinite where flat.
+    /// Smallest radius of curvature at every element; infinite where it is flat.
     pub radius: Vec<f64>,
     /// Signed curvature of largest magnitude of every element, positive where the body is convex.
     pub curvature: Vec<f64>,
     /// Sharp edges: corners in 2-D, crease segments in 3-D.
     pub sharp: Vec<Edge<D>>,
-    /// Exact shape of every body where known.
+    /// Exact shape of every body, where it is known.
     pub exact: Vec<Exact<D>>,
-    /// Leading and trailing edge of every body of a case, in the plane.
+    /// Leading and trailing edge of every body of a case (2-D).
     pub chord_lines: Vec<Option<[Vector<D>; 2]>>,
     tree: Tree<D>,
     bounds: Bounds<D>,
-    /// Boxes around the elements of each body.
+    /// Bounding box of each body.
     boxes: Vec<Bounds<D>>,
-    /// Elements, before they were cut, of bodies that are cut by others; of the others none.
+    /// Elements before clipping, of bodies that are clipped by others; empty for the other bodies.
     whole: Vec<Vec<[Vector<D>; D]>>,
     pub(super) measured: Measured,
 }
 
 impl<const D: usize> Surface<D> {
-    /// Joins the named shells of all bodies.
+    /// Combines the named shells of all bodies.
     pub fn new(shells: &[(String, Shell<D>)]) -> Self {
         let names: Vec<String> = shells.iter().map(|(name, _)| name.clone()).collect();
         let skin = |(k, (_, shell)): (usize, &(String, Shell<D>))| Skin { shell: shell.clone(), owner: vec![k as u16] };
         Self::of(&names, &shells.iter().enumerate().map(skin).collect::<Vec<_>>())
     }
 
-    /// Joins the skins of all bodies, which have these names.
+    /// Combines the outer surfaces of all bodies, which have these names.
     pub fn of(bodies: &[String], skins: &[Skin<D>]) -> Self {
         let mut surface = Self {
             vertices: Vec::new(),
@@ -126,13 +126,14 @@ impl<const D: usize> Surface<D> {
         surface
     }
 
-    /// Keeps what body number `body` was before others cut it.
+    /// Stores the elements of body number `body` before it was clipped by others.
     pub(super) fn keep_whole(&mut self, body: usize, shell: &Shell<D>) {
         self.measured = Measured::default();
         self.whole[body] = (0..shell.elements.len()).map(|e| shell.corners(e)).collect();
     }
 
-    /// Corners of the elements of body number `body`, with what lies inside other bodies; of all walls without a number.
+    /// Corners of the elements of body number `body`, including the parts inside other bodies; without a number, those
+    /// of all walls.
     pub(super) fn corners_of(&self, body: Option<usize>) -> Vec<[Vector<D>; D]> {
         match body {
             Some(k) if !self.whole[k].is_empty() => self.whole[k].clone(),
@@ -143,8 +144,8 @@ impl<const D: usize> Surface<D> {
         }
     }
 
-    /// The same with every body moved rigidly; `point` and `direction` take the number of a body. Shapes known exactly are
-    /// not carried along: what is left of them are their elements.
+    /// The surface with every body moved rigidly; `point` and `direction` receive the number of the body. Exact shapes
+    /// are lost; only their elements remain.
     pub fn moved(
         &self,
         point: impl Fn(u16, &Vector<D>) -> Vector<D>,
@@ -191,7 +192,7 @@ impl<const D: usize> Surface<D> {
     }
 
     fn tag(&mut self, name: &str) -> u16 {
-        // elements of one name follow one another: it is the last one, mostly
+        // elements of the same tag follow one another: it is usually the last one
         let found = self.tags.iter().rposition(|t| t == name).unwrap_or_else(|| {
             self.tags.push(name.to_string());
             self.tags.len() - 1
@@ -204,7 +205,7 @@ impl<const D: usize> Surface<D> {
         self.elements[element as usize].vertices.map(|v| self.vertices[v as usize])
     }
 
-    /// The point of the surface nearest to `x`, if it is nearer than `within`.
+    /// The point of the surface nearest to `x`, if its distance is less than `within`.
     pub fn nearest(&self, x: &Vector<D>, within: f64) -> Option<Nearest<D>> {
         let hit = self.tree.nearest(x, within)?;
         let (point, normal) = self.element_point(hit.element, &hit.weights);
@@ -213,24 +214,24 @@ impl<const D: usize> Surface<D> {
     }
 
     /// True when the open segment from `a` to `b` crosses an element. End points on the surface (within 1e-9 of the
-    /// segment's length) do not count: a chord through a body between two points of its wall crosses nothing.
+    /// length of the segment) do not count: a chord through a body between two points of its wall crosses nothing.
     pub fn crosses(&self, a: &Vector<D>, b: &Vector<D>) -> bool {
         self.tree.crosses(a, b)
     }
 
-    /// Height n·y along the unit vector `direction` that no element within `bounds` exceeds; −∞ when there is none.
+    /// Greatest height n·y of the elements within `bounds` along the unit vector `direction`; −∞ when there are none.
     pub fn highest(&self, direction: &Vector<D>, bounds: &Bounds<D>) -> f64 {
         self.tree.highest(direction, bounds)
     }
 
-    /// True when every side of an element belongs to a second one that runs along it the other way.
+    /// True when the surface is closed: every side of an element is shared with a second one in the opposite direction.
     pub fn is_closed(&self) -> bool {
         let mut sides = Vec::with_capacity(self.elements.len() * D);
         for e in &self.elements {
             let v = &e.vertices;
             for c in 0..D {
                 let next = v[(c + 1) % D];
-                // in 2-D a side is a vertex, where one segment begins and one ends
+                // in 2-D a side is a vertex, at which one segment starts and one ends
                 sides.push(if D == 2 { (v[c], 0, c == 0) } else { (v[c].min(next), v[c].max(next), v[c] < next) });
             }
         }
@@ -248,17 +249,17 @@ impl<const D: usize> Surface<D> {
         self.tree.winding(x)
     }
 
-    /// Smallest box around all elements.
+    /// Bounding box of all elements.
     pub fn bounds(&self) -> Bounds<D> {
         self.bounds
     }
 
-    /// Smallest box around all elements of body number `body`.
+    /// Bounding box of body number `body`.
     pub fn bounds_of(&self, body: usize) -> Bounds<D> {
         self.boxes.get(body).copied().unwrap_or(Bounds::EMPTY)
     }
 
-    /// Finds the boxes around all elements and around those of each body, whose corners are given.
+    /// Computes the bounding boxes of all elements and of each body from their corners.
     fn enclose(&mut self, corners: &[[Vector<D>; D]]) {
         self.boxes = vec![Bounds::EMPTY; self.bodies.len()];
         for (element, corners) in self.elements.iter().zip(corners) {
@@ -280,19 +281,20 @@ impl<const D: usize> Surface<D> {
         (0..self.elements.len()).map(|e| flux(e as u32)).sum::<f64>() / D as f64
     }
 
-    /// Outward normal times area (2-D: length) of an element.
+    /// Area vector of an element: outward normal times area (2-D: length).
     pub fn element_area_vector(&self, element: u32) -> Vector<D> {
         simplex::area_vector(&self.corners(element))
     }
 
-    /// Point of an element with barycentric `weights` and the interpolated outward unit normal there.
+    /// Point of an element with these barycentric weights, and the interpolated outward unit normal there.
     pub fn element_point(&self, element: u32, weights: &[f64; D]) -> (Vector<D>, Vector<D>) {
         let normal = simplex::blend(&self.elements[element as usize].normals, weights).unit();
         (simplex::blend(&self.corners(element), weights), normal)
     }
 
-    /// Point, normal and curvature of the shape behind the elements: exact on circles and spheres, elsewhere on the cubic
-    /// patch through the corners of the element with their normals (in 2-D fourth-order accurate along the outline).
+    /// Position, normal and curvature of the shape that the elements approximate: exact on circles and spheres,
+    /// elsewhere on the cubic patch through the corners of the element with their normals (in 2-D fourth-order accurate
+    /// along the outline).
     pub fn project(&self, nearest: &Nearest<D>) -> Projection<D> {
         let element = &self.elements[nearest.element as usize];
         if let Exact::Ball { centre, radius } = self.exact[usize::from(element.body)] {
@@ -306,8 +308,8 @@ impl<const D: usize> Surface<D> {
         }
     }
 
-    /// First place where elements without a common vertex intersect, with both elements: a self-intersection of a body,
-    /// or an overlap of two.
+    /// First position where elements without a common vertex intersect, with both elements: a self-intersection of a
+    /// body, or an overlap of two.
     pub fn intersection(&self) -> Option<(Vector<D>, [u32; 2])> {
         (0..self.elements.len() as u32).find_map(|e| {
             let corners = self.corners(e);
@@ -322,8 +324,8 @@ impl<const D: usize> Surface<D> {
         })
     }
 
-    /// First place where two straight sides of an outline lie on one another along more than `slack`, with both sides; `counted` tells from the
-    /// product of their directions which pairs count. In 2-D alone.
+    /// First position where two straight sides of an outline overlap along more than `slack`, with both sides (2-D
+    /// only). `counted` decides from the product of their directions which pairs are considered.
     pub(super) fn overlap(&self, slack: f64, counted: impl Fn(f64) -> bool) -> Option<(Vector<D>, [u32; 2])> {
         (0..self.elements.len() as u32).find_map(|e| {
             let corners = self.corners(e);
@@ -338,7 +340,7 @@ impl<const D: usize> Surface<D> {
         })
     }
 
-    /// First place where this surface intersects another one, elements that share a corner left out.
+    /// First position where this surface intersects another one; elements that share a corner are excluded.
     pub(super) fn crossing(&self, other: &Self) -> Option<Vector<D>> {
         (0..self.elements.len() as u32).find_map(|e| {
             let corners = self.corners(e);
@@ -353,7 +355,7 @@ impl<const D: usize> Surface<D> {
         })
     }
 
-    /// True when this closed surface and another one overlap or touch.
+    /// True when this closed surface overlaps or touches another one.
     pub(super) fn meets(&self, other: &Self) -> bool {
         let touching = |s: &Self| TOUCHING * s.bounds().extent().max_abs();
         let within = |a: &Self, b: &Self| {

@@ -1,9 +1,9 @@
-//! Bodies that intersect, clipped at their intersection and closed: the walls of what they enclose together.
+//! Union of intersecting bodies: the walls of the volume that they enclose together.
 //!
-//! Triangles are cut by the `manifold-rust` library, a port of Lalish's Manifold whose result is closed whatever rounding does (Smith and
-//! Dodgson, *A topologically robust algorithm for Boolean operations on polyhedral shapes using approximate arithmetic*, Computer-Aided
-//! Design 39, 2007). Each triangle that comes out knows the one it was cut from, whose body, tag and normals it keeps: the shape that
-//! the triangles stand for is the same as before.
+//! Triangles are clipped by the `manifold-rust` library, a port of Lalish's Manifold, whose result is closed
+//! independent of round-off (Smith and Dodgson, *A topologically robust algorithm for Boolean operations on polyhedral
+//! shapes using approximate arithmetic*, Computer-Aided Design 39, 2007). Each resulting triangle refers to its
+//! original, whose body, tag and normals it keeps: the shape that the triangles approximate does not change.
 use manifold_rust::manifold::Manifold;
 use manifold_rust::types::{Error, MeshGL64, OpType};
 
@@ -11,32 +11,32 @@ use super::shell::{Exact, Features, Shell, root, unite};
 use super::simplex;
 use crate::math::Vector;
 
-/// Part of a volume or an area that is nothing: triangles of the same shape may differ by so much.
+/// Relative volume or area that counts as zero: triangulations of the same shape may differ by this much.
 const NOTHING: f64 = 1e-6;
 
-/// What bodies enclose together.
+/// Union of bodies.
 pub(super) struct United {
     pub(super) shell: Shell<3>,
-    /// Number, among the shells that were united, of the one that each triangle is of.
+    /// For each triangle, the index of its original among the united shells.
     pub(super) owner: Vec<u16>,
 }
 
-/// How two closed shells stand to one another.
+/// Relative position of two closed shells.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Meeting {
-    /// They share a part of both.
+    /// They have a common volume, which is a part of both.
     Overlapping,
-    /// They share walls, or a piece of them, but no volume: a face goes.
+    /// They share walls, or parts of walls, but no volume.
     Joined,
-    /// They touch at points or edges only.
+    /// They touch only at points or edges.
     Touching,
-    /// The first lies inside the second, or is the same.
+    /// The first lies inside the second or coincides with it.
     Within,
     /// The second lies inside the first.
     Around,
 }
 
-/// How `a` stands to `b`; the reason where that cannot be told.
+/// Relative position of `a` and `b`; an error message where it cannot be determined.
 pub(super) fn meeting(a: &Shell<3>, b: &Shell<3>) -> Result<Meeting, String> {
     let solids = solids(&[a, b], &[0, a.elements.len()])?;
     let both = solids[0].union(&solids[1]);
@@ -56,7 +56,7 @@ pub(super) fn meeting(a: &Shell<3>, b: &Shell<3>) -> Result<Meeting, String> {
     })
 }
 
-/// The shells in the form of the library, triangles numbered from those in `first`.
+/// The shells as solids of the library, with triangles numbered from those in `first`.
 fn solids(shells: &[&Shell<3>], first: &[usize]) -> Result<Vec<Manifold>, String> {
     let solid = |k: usize| {
         let solid = Manifold::from_mesh_gl64(&mesh(shells[k], first[k]));
@@ -68,7 +68,7 @@ fn solids(shells: &[&Shell<3>], first: &[usize]) -> Result<Vec<Manifold>, String
     (0..shells.len()).map(solid).collect()
 }
 
-/// Unites closed shells; the reason where that cannot be done.
+/// Union of closed shells; an error message where it cannot be computed.
 pub(super) fn united(shells: &[&Shell<3>]) -> Result<United, String> {
     let mut first = vec![0];
     for shell in shells {
@@ -82,7 +82,7 @@ pub(super) fn united(shells: &[&Shell<3>]) -> Result<United, String> {
     Ok(traced(&found.get_mesh_gl64(-1), shells, &first))
 }
 
-/// A shell in the form of the library; its triangles are numbered from `from`.
+/// A shell as a mesh of the library, with triangles numbered from `from`.
 fn mesh(shell: &Shell<3>, from: usize) -> MeshGL64 {
     MeshGL64 {
         num_prop: 3,
@@ -93,7 +93,7 @@ fn mesh(shell: &Shell<3>, from: usize) -> MeshGL64 {
     }
 }
 
-/// The result with what each triangle keeps of the one that it was cut from.
+/// The result, in which each triangle has the data of its original.
 fn traced(mesh: &MeshGL64, shells: &[&Shell<3>], first: &[usize]) -> United {
     let width = mesh.num_prop as usize;
     let vertices: Vec<Vector<3>> = mesh.vert_properties.chunks(width).map(|c| Vector([c[0], c[1], c[2]])).collect();
@@ -140,7 +140,7 @@ fn traced(mesh: &MeshGL64, shells: &[&Shell<3>], first: &[usize]) -> United {
     United { shell, owner }
 }
 
-/// Drops vertices that no element uses.
+/// Removes vertices that no element uses.
 pub(super) fn compact(vertices: &[Vector<3>], mut elements: Vec<[u32; 3]>) -> (Vec<Vector<3>>, Vec<[u32; 3]>) {
     let (mut number, mut kept) = (vec![u32::MAX; vertices.len()], Vec::new());
     for v in elements.iter_mut().flatten() {

@@ -1,7 +1,7 @@
-//! Vertices of a soup of triangles that are one.
+//! Merging of coincident vertices of a triangle soup.
 //!
-//! The smallest tolerance that closes the surface is taken, from round-off over single precision to the noise of scans, as long as
-//! no triangle is lost by it: what is thinner than the tolerance stays as it is.
+//! The smallest tolerance that closes the surface is used, from round-off over single precision to the noise of scans,
+//! as long as no triangle is lost: details thinner than the tolerance are preserved.
 use super::GeometryError;
 use super::mesh::Soup;
 use super::shell::{Exact, Shell, facets, runs};
@@ -9,15 +9,15 @@ use crate::math::{Bounds, Vector};
 use std::collections::{HashMap, HashSet};
 use std::f64::consts::PI;
 
-/// Vertices nearer than these fractions of the body's diagonal are one; those above the rounding of single precision are tried only
-/// where smaller ones leave open edges.
+/// Tolerances as fractions of the diagonal of the body; those above single-precision round-off are tried only where
+/// smaller ones leave open edges.
 const WELD: [f64; 5] = [1e-9, 1e-6, 1e-5, 4e-5, 1e-4];
-/// Surfaces smaller than this are refused: squares of areas would underflow.
+/// Smallest size of a surface; squares of areas of smaller ones would underflow.
 const SMALLEST: f64 = 1e-50;
-/// Turning angle of sharp edges, radians (40°).
+/// Turning angle above which an edge is sharp [rad] (40°).
 const CREASE: f64 = 40.0 * PI / 180.0;
 
-/// Welds vertices `within` a distance; where none is given, with the smallest tolerance that closes the surface.
+/// Merges vertices nearer than `within`; `None`: the smallest tolerance that closes the surface.
 pub(super) fn weld(
     file: &str,
     soup: &Soup,
@@ -38,7 +38,7 @@ pub(super) fn weld(
         }
         let mut wider = Vec::new();
         let next = welded(soup, tolerance, file, &mut wider);
-        // a wider weld must close edges and not flatten what is thin
+        // a larger tolerance must close edges and must not flatten thin details
         let edges = next.edges();
         if edges.open < least.open && edges.crowded <= least.crowded && next.collapsed == best.collapsed {
             wider.push(format!("{file}: vertices up to {tolerance:.1e} apart are joined to close {gaps} open edges"));
@@ -53,7 +53,7 @@ pub(super) fn weld(
     Ok(best)
 }
 
-/// Shell with vertices nearer than `tolerance` joined, without degenerate and repeated triangles.
+/// The shell with vertices nearer than `tolerance` merged, without degenerate and repeated triangles.
 fn welded(soup: &Soup, tolerance: f64, file: &str, notes: &mut Vec<String>) -> Welded {
     let mut welder = Welder { cell: 4.0 * tolerance, tolerance, cells: HashMap::new(), vertices: Vec::new() };
     let (mut elements, mut tags) = (Vec::new(), Vec::new());
@@ -99,20 +99,21 @@ fn welded(soup: &Soup, tolerance: f64, file: &str, notes: &mut Vec<String>) -> W
     Welded { shell, collapsed: degenerate + repeated + walls }
 }
 
-/// True when two triangles of the same vertices run round them in the same sense.
+/// True when two triangles of the same vertices have the same orientation.
 fn same_sense(a: &[u32; 3], b: &[u32; 3]) -> bool {
     b.iter().position(|v| *v == a[0]).is_some_and(|k| b[(k + 1) % 3] == a[1])
 }
 
-/// Drops triangles `between` two parts, which were there once for each of them, where that leaves fewer edges with an odd number of triangles:
-/// then they are walls that parts share, and not copies of outer ones. Tells how many.
+/// Removes triangles `between` two parts, which occur once for each part, if this reduces the number of edges with an
+/// odd number of triangles; they are then walls that both parts share and not copies of outer ones. Returns the number
+/// removed.
 fn drop_between(elements: &mut Vec<[u32; 3]>, tags: &mut Vec<u16>, between: &[usize]) -> usize {
     if between.is_empty() {
         return 0;
     }
     let odd = |elements: &[[u32; 3]]| runs(&facets(elements)).filter(|run| run.len() % 2 == 1).count();
     let inner: HashSet<usize> = between.iter().copied().collect();
-    // the rim of a fin without thickness, both of whose sides are there, has no other triangle
+    // the rim of a fin of zero thickness, both sides of which are present, has no other triangle
     if runs(&facets(elements)).any(|run| run.len() == 1 && inner.contains(&(run[0].element as usize))) {
         return 0;
     }
@@ -126,13 +127,13 @@ fn drop_between(elements: &mut Vec<[u32; 3]>, tags: &mut Vec<u16>, between: &[us
     inner.len()
 }
 
-/// A shell, and how many triangles the weld left nothing of.
+/// A shell, and the number of triangles lost by merging.
 struct Welded {
     shell: Shell<3>,
     collapsed: usize,
 }
 
-/// Numbers of edges with one triangle, and with more than two.
+/// Numbers of edges with one triangle and with more than two.
 #[derive(Clone, Copy)]
 struct Edges {
     open: usize,
@@ -147,7 +148,8 @@ impl Welded {
     }
 }
 
-/// Joins near points with a hashed grid of cells four tolerances wide: a ball of one tolerance meets few cells.
+/// Merges near points with a hash grid of cells four tolerances wide: a ball of the radius of one tolerance overlaps
+/// few cells.
 struct Welder {
     cell: f64,
     tolerance: f64,

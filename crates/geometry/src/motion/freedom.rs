@@ -1,69 +1,71 @@
-//! Coordinates that are unknowns, and what each of them does to a body.
+//! Unknown coordinates of a body and their effect on its position.
 //!
-//! A body on springs, a free body, or one that bends in modes of its own has no x(t) that is known beforehand. Its coordinates q are
-//! unknowns beside those of the gas; at any time they, their rates and accelerations make a motion of the same kind as a prescribed
-//! one ([`BodyMotion::momentary`]), so that all that moves clouds serves both.
+//! The position x(t) of an elastically supported, free or flexible body is not known in advance. Its coordinates q are
+//! unknowns in addition to those of the gas. At any time, the coordinates with their rates and accelerations define a
+//! motion of the same kind as a prescribed one ([`BodyMotion::momentary`]), so that the same code moves the cloud in
+//! both cases.
 //!
-//! The unknowns of a structure stand one coordinate after another, each with its rate: q₀, q₀', q₁, q₁', …
+//! The unknowns of a structure are stored one coordinate after another, each followed by its rate: q₀, q₀', q₁, q₁', …
 //!
 //! [`BodyMotion::momentary`]: super::BodyMotion::momentary
 use crate::math::Vector;
 use crate::math::jet::Jet;
 
-/// What a coordinate does.
+/// Effect of a coordinate.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Role<const D: usize> {
-    /// Turns the body about its pivot: in the plane nose up, in space about its axis.
+    /// Rotation of the body about its pivot: nose up in 2-D, about its axis in 3-D.
     Turn,
-    /// Shifts it along a direction.
+    /// Displacement along a direction.
     Shift(Vector<D>),
-    /// Is a component of its rotation vector, in space.
+    /// A component of the rotation vector in 3-D.
     Attitude(usize),
-    /// Is the coordinate of one of its modes.
+    /// Coordinate of one of the modes of the body.
     Mode(usize),
-    /// Turns a flap by β: sin β and cos β − 1 are the coordinates of two of its modes, [`Hinge`]s that turn and that stretch.
+    /// Rotation of a flap by β: sin β and cos β − 1 are the coordinates of two modes, [`Hinge`]s that rotate and
+    /// stretch.
     ///
     /// [`Hinge`]: super::Hinge
     Flap {
-        /// The mode of sin β.
+        /// Index of the mode with the coordinate sin β.
         sine: usize,
-        /// The mode of cos β − 1.
+        /// Index of the mode with the coordinate cos β − 1.
         cosine: usize,
     },
 }
 
-/// The coordinates of one body.
+/// The unknown coordinates of one body.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Freedom<const D: usize> {
-    /// The first coordinate of this body among those of all.
+    /// Index of the first coordinate of this body among those of all bodies.
     first: usize,
     roles: Vec<Role<D>>,
 }
 
 impl<const D: usize> Freedom<D> {
-    /// Coordinates of these roles one after another, the first of them number `first` among those of all bodies.
+    /// Coordinates with these roles, in this order; `first` is the index of the first one among those of all bodies.
     pub fn new(first: usize, roles: Vec<Role<D>>) -> Self {
         Self { first, roles }
     }
 
-    /// The coordinates that do something, as they are in `jets` of all bodies; at rest where those are missing.
+    /// The roles of the coordinates with their values from the `jets` of all bodies; missing coordinates are omitted.
     pub(super) fn moves<'a>(&'a self, jets: &'a [Jet]) -> impl Iterator<Item = (&'a Role<D>, Jet)> {
         let jet = |k: usize| jets.get(self.first + k).copied().unwrap_or(Jet { value: 0.0, first: 0.0, second: 0.0 });
         self.roles.iter().enumerate().map(move |(k, role)| (role, jet(k)))
     }
 
-    /// True when a coordinate turns the body.
+    /// True when a coordinate rotates the body.
     pub(super) fn turns(&self) -> bool {
         self.roles.iter().any(|role| matches!(role, Role::Turn | Role::Attitude(_)))
     }
 
-    /// True when it turns freely in space.
+    /// True when the body has a free attitude in 3-D.
     pub(super) fn turns_in_space(&self) -> bool {
         self.roles.iter().any(|role| matches!(role, Role::Attitude(_)))
     }
 }
 
-/// Coordinates at rest where the unknowns `u` of structures have them.
+/// Coordinates, without their rates, from the unknowns `u` of structures.
 pub fn positions(u: &[f64]) -> Vec<Jet> {
     let at_rest = |pair: &[f64]| Jet { value: pair[0], first: 0.0, second: 0.0 };
     u.chunks_exact(2).map(at_rest).collect()

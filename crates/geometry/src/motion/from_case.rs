@@ -1,6 +1,6 @@
-//! Laws of motion from the tables of a case and the files they name.
+//! Motions from the tables of a case and the files that they name.
 //!
-//! Laws are in the time of the solver, the tables in that of the case: here one becomes the other, and nowhere else.
+//! Motions are in the time of the solver, tables in that of the case. The conversion happens only here.
 use std::sync::Arc;
 
 use super::mode_points::{self, Flaw};
@@ -12,39 +12,39 @@ use crate::case::{
 };
 use crate::math::Vector;
 
-/// Reads the text of a file that a case names.
+/// A function that reads the text of a file that a case names.
 pub type ReadFile<'a> = &'a dyn Fn(&str) -> std::io::Result<String>;
 
-/// Why a motion cannot be built.
+/// Reason why a motion cannot be constructed.
 #[derive(Debug, thiserror::Error)]
 pub enum MotionError {
-    /// The file of a table cannot be read.
+    /// The file of a motion table cannot be read.
     #[error("cannot read the motion table `{file}`: {source}")]
     File {
-        /// Its name.
+        /// Name of the file.
         file: String,
-        /// Why.
+        /// Cause.
         source: std::io::Error,
     },
-    /// The file of a table holds no table.
+    /// The file does not contain a valid motion table.
     #[error(
         "motion table `{file}`: {problem}\nhint: give columns `time` and any of `x`, `y`, `z`, `angle_deg`, `angle_rad`"
     )]
     Table {
-        /// Its name.
+        /// Name of the file.
         file: String,
-        /// What is wrong.
+        /// Description of the problem.
         problem: String,
     },
-    /// The file of a mode cannot be read.
+    /// The file of a mode shape cannot be read.
     #[error("cannot read the mode `{file}`: {source}\nhint: paths are relative to the case file")]
     ModeFile {
-        /// Its name.
+        /// Name of the file.
         file: String,
-        /// Why.
+        /// Cause.
         source: std::io::Error,
     },
-    /// The file of a mode holds no mode.
+    /// The file does not contain a valid mode shape.
     #[error("{0}")]
     Mode(Box<CaseErrors>),
     /// The points of a mode do not determine a shape.
@@ -53,55 +53,55 @@ pub enum MotionError {
          hint: keep the points of one side, and no two within a millionth of the extent"
     )]
     Crowded {
-        /// Its name.
+        /// Name of the file.
         file: String,
     },
-    /// Two points of a mode that are one move differently.
+    /// Two nearly coincident points of a mode have different displacements.
     #[error(
         "mode `{file}`, line {second}: the point is {distance:.1e} away from that of line {first}, but its displacement differs by \
          {difference:.2e}, where the greatest of all is {greatest:.2e}\n\
          hint: remove one of the two rows: the shape between points is smooth"
     )]
     Jump {
-        /// Its name.
+        /// Name of the file.
         file: String,
-        /// Line of one point.
+        /// Line of the first point.
         first: usize,
-        /// Line of the other.
+        /// Line of the second point.
         second: usize,
-        /// Distance between them.
+        /// Distance between the points.
         distance: f64,
         /// Difference of their displacements.
         difference: f64,
         /// Greatest displacement of all points.
         greatest: f64,
     },
-    /// A formula cannot be read.
+    /// A formula is invalid.
     #[error("formula `{text}`: {source}")]
     Formula {
-        /// The formula.
+        /// Text of the formula.
         text: String,
-        /// Why.
+        /// Cause.
         source: FormulaError,
     },
-    /// A law has no finite place at the start.
+    /// The position at the start is not finite.
     #[error(
         "the motion of {body} is not finite at t = 0\nhint: look for divisions by zero, `ln` and `sqrt` in its formulas"
     )]
     NotFinite {
-        /// Whose.
+        /// Name of the body.
         body: String,
     },
-    /// A law turns a body about no point.
+    /// A body rotates but has no pivot.
     #[error("the motion of {body} turns, but has no pivot\nhint: add `pivot` to its motion")]
     Pivot {
-        /// Whose.
+        /// Name of the body.
         body: String,
     },
 }
 
 impl<const D: usize> Motions<D> {
-    /// The motions of `case`; `chord` is its reference chord, `read` opens the files it names.
+    /// The motions of `case`. `chord` is its reference chord; `read` reads the files that it names.
     pub fn of_case(case: &Case, chord: f64, read: ReadFile<'_>) -> Result<Self, MotionError> {
         let build = |motion: Option<&BodyMotionSpec>, whose: String| match motion {
             Some(motion) => Builder { case, chord, units: case.flow.units(), read, motion, whose: &whose }.law(),
@@ -119,7 +119,7 @@ impl<const D: usize> Motions<D> {
     }
 }
 
-/// Why tables of the motions of `case` cannot be used, one reason for each; `read` opens the files it names.
+/// One error for each motion table of `case` that cannot be used; `read` reads the files that the case names.
 pub fn faulty_tables<const D: usize>(case: &Case, read: ReadFile<'_>) -> Vec<MotionError> {
     let own = case.bodies.iter().filter_map(|body| body.motion.as_ref());
     let all = own.chain(case.motion.as_ref().map(|motion| &motion.law));
@@ -130,7 +130,7 @@ pub fn faulty_tables<const D: usize>(case: &Case, read: ReadFile<'_>) -> Vec<Mot
     all.filter_map(fault).collect()
 }
 
-/// The shape of a mode from its file.
+/// Reads the shape of a mode from its file.
 pub fn mode_shape<const D: usize>(file: &str, read: ReadFile<'_>) -> Result<ModeShape<D>, MotionError> {
     let text = read(file).map_err(|source| MotionError::ModeFile { file: file.to_owned(), source })?;
     let table = read_mode(&text, file, D).map_err(|e| MotionError::Mode(Box::new(e)))?;
@@ -142,7 +142,7 @@ pub fn mode_shape<const D: usize>(file: &str, read: ReadFile<'_>) -> Result<Mode
     })
 }
 
-/// What the law of one body is made from.
+/// Data from which the motion of one body is constructed.
 struct Builder<'a> {
     case: &'a Case,
     chord: f64,
@@ -190,7 +190,7 @@ impl Builder<'_> {
             let shape = mode_shape(&mode.file, self.read)?;
             law = law.with_mode(Arc::new(shape), sine(mode.amplitude, mode.phase.0, omega));
         }
-        // only a table file can turn a body unseen by the reader of the case
+        // only the file of a table can contain a rotation that the reader of the case has not seen
         if pivot.is_none() && law.turns() {
             return Err(MotionError::Pivot { body: self.whose.to_owned() });
         }
@@ -200,7 +200,7 @@ impl Builder<'_> {
         Ok(law)
     }
 
-    /// Adds the splines through a table.
+    /// Adds the splines of a motion table.
     fn table<const D: usize>(&self, table: &MotionTable, law: BodyMotion<D>) -> Result<BodyMotion<D>, MotionError> {
         let samples = match &table.file {
             None => Samples::of(table),
@@ -222,7 +222,7 @@ impl Builder<'_> {
         Ok(law.with_shift(std::array::from_fn(|d| samples.shift[d].as_ref().map_or(TimeFunction::Steady(0.0), spline))))
     }
 
-    /// Adds formulas in the time of the case, in which `frequency` is.
+    /// Adds formulas of the time of the case; `frequency` is in the same units.
     fn formulas<const D: usize>(
         &self,
         formula: &MotionFormula,

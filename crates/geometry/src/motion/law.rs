@@ -1,10 +1,11 @@
-//! The motion of one body, and of several.
+//! The motion of one body.
 //!
-//! x(t) = R(θ(t)) (X + Σ q_m(t) φ_m(X) − p) + p + d(t): the body bends by its modes φ_m, as far as their coordinates q_m say, and
-//! turns by θ about an axis a through its pivot p, which travels with the displacement d; X is the place before any motion. With the part of v = X − p along the axis kept (P v = a (a·v)) and the
-//! turned one from Rodrigues' formula, R v = P v + cos θ (v − P v) + sin θ (a × v). In the plane a points away from the
-//! reader: positive angles are clockwise, nose up for a stream along +x. In space the default is a = +y, nose up for lift
-//! along +z. θ and d are sums of [`TimeFunction`]s; velocity and acceleration follow from the same lines by [`Jet`]s.
+//! x(t) = R(θ(t)) (X + Σ q_m(t) φ_m(X) − p) + p + d(t): the body deforms by its modes φ_m with the coordinates q_m and
+//! rotates by θ about an axis a through its pivot p, which moves with the displacement d; X is the position before any
+//! motion. With v = X − p and its part along the axis, P v = a (a·v), Rodrigues' formula is R v = P v + cos θ (v − P v)
+//! + sin θ (a × v). In 2-D, a points away from the reader, so that positive angles are clockwise: nose up for a stream
+//! along +x. In 3-D the default is a = +y, nose up for lift along +z. θ and d are sums of [`TimeFunction`]s; velocity
+//! and acceleration follow from the same code with [`Jet`]s.
 use std::borrow::Cow;
 use std::sync::Arc;
 
@@ -21,22 +22,22 @@ use crate::math::rotation::rotate;
 #[derive(Clone, Debug)]
 pub struct BodyMotion<const D: usize> {
     pivot: Vector<D>,
-    /// Rows of P: projection onto the axis, zero in the plane.
+    /// Rows of P, the projection onto the axis; zero in 2-D.
     along: [Vector<D>; D],
-    /// Rows of the matrix of a ×.
+    /// Rows of the matrix of the cross product a ×.
     across: [Vector<D>; D],
     turn: Vec<TimeFunction>,
     shift: Vec<[TimeFunction; D]>,
     modes: Vec<(Arc<ModeShape<D>>, TimeFunction)>,
-    /// Rotation vector θ of a body that turns freely in space; empty for all others.
+    /// Rotation vector θ of a body with free attitude in 3-D; empty for all other bodies.
     attitude: Vec<TimeFunction>,
-    /// How coordinates that are unknowns move the body.
+    /// Relation between unknown coordinates and the motion of the body.
     freedom: Option<Arc<Freedom<D>>>,
-    /// The surface of a body made of particles, and how far it is displaced.
+    /// Surface of a solid of particles, and its displacement.
     net: Option<(Arc<SurfaceNet<D>>, NetDisplacement<D>)>,
 }
 
-/// Where a point is, how fast it moves, and how it speeds up.
+/// Position, velocity and acceleration of a point.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Kinematics<const D: usize> {
     /// Position.
@@ -48,12 +49,12 @@ pub struct Kinematics<const D: usize> {
 }
 
 impl<const D: usize> BodyMotion<D> {
-    /// At rest.
+    /// A body at rest.
     pub fn fixed() -> Self {
         Self::about(Vector::ZERO, None)
     }
 
-    /// At rest so far, with a pivot and (in space) an axis; without one the axis is +y.
+    /// A body at rest with a pivot and (in 3-D) an axis of rotation; the default axis is +y.
     pub fn about(pivot: Vector<D>, axis: Option<[f64; 3]>) -> Self {
         let a = Vector(if D == 2 { [0.0, 0.0, -1.0] } else { axis.unwrap_or([0.0, 1.0, 0.0]) }).unit();
         let cross = [[0.0, -a[2], a[1]], [a[2], 0.0, -a[0]], [-a[1], a[0], 0.0]];
@@ -70,8 +71,8 @@ impl<const D: usize> BodyMotion<D> {
         }
     }
 
-    /// Hands the body over to coordinates that are unknowns: it stands at rest until they are known, see [`Self::momentary`]. A
-    /// coordinate of the role [`Role::Mode`] moves the next of `shapes`.
+    /// Declares coordinates of the body as unknowns. The body is at rest until their values are given, see
+    /// [`Self::momentary`]. Each coordinate of the role [`Role::Mode`] belongs to the next one of `shapes`.
     pub fn with_freedom(mut self, freedom: Freedom<D>, shapes: Vec<Arc<ModeShape<D>>>) -> Self {
         let ease = TimeFunction::Steady(0.0);
         self.modes = shapes.into_iter().map(|shape| (shape, ease.clone())).collect();
@@ -79,23 +80,24 @@ impl<const D: usize> BodyMotion<D> {
         self
     }
 
-    /// The same of a body made of particles, whose displacements are unknowns, on its surface: the motion is that of its supports.
+    /// Declares the displacements of the surface particles of a solid as unknowns; the motion is then that of its
+    /// supports.
     pub fn with_net(self, net: Arc<SurfaceNet<D>>) -> Self {
         Self { net: Some((net, NetDisplacement::default())), ..self }
     }
 
-    /// The surface of a body made of particles.
+    /// Surface of a solid of particles, if the body is one.
     pub fn net(&self) -> Option<&Arc<SurfaceNet<D>>> {
         self.net.as_ref().map(|(net, _)| net)
     }
 
-    /// How coordinates that are unknowns move the body, where they do.
+    /// Relation between unknown coordinates and the motion of the body, where there are any.
     pub fn freedom(&self) -> Option<&Freedom<D>> {
         self.freedom.as_deref()
     }
 
-    /// The motion about the time `about`, at which coordinates that are unknowns, and their rates, are `jets`: position, velocity
-    /// and acceleration at that time are those of the body. A prescribed motion is its own.
+    /// The motion near the time `about`, where `jets` are the unknown coordinates and their rates: position, velocity
+    /// and acceleration are exact at that time. A prescribed motion is returned unchanged.
     pub fn momentary(&self, about: f64, jets: &[Jet]) -> Cow<'_, Self> {
         if let Some((net, _)) = &self.net {
             return Cow::Owned(Self { net: Some((Arc::clone(net), net.displacement(jets))), ..self.clone() });
@@ -126,7 +128,7 @@ impl<const D: usize> BodyMotion<D> {
         Cow::Owned(now)
     }
 
-    /// Adds an angle.
+    /// Adds a rotation.
     pub fn with_angle(mut self, function: TimeFunction) -> Self {
         self.turn.push(function);
         self
@@ -138,18 +140,18 @@ impl<const D: usize> BodyMotion<D> {
         self
     }
 
-    /// Adds `function` times `direction` as displacement, for courses that are proportional to a factor.
+    /// Adds a displacement `function` times `direction`, for functions that are proportional to a factor.
     pub(super) fn with_shift_along(self, direction: &Vector<D>, function: impl Fn(f64) -> TimeFunction) -> Self {
         self.with_shift(std::array::from_fn(|d| function(direction[d])))
     }
 
-    /// Adds a mode, whose coordinate is `function`.
+    /// Adds a mode with the coordinate `function`.
     pub fn with_mode(mut self, shape: Arc<ModeShape<D>>, function: TimeFunction) -> Self {
         self.modes.push((shape, function));
         self
     }
 
-    /// Place of `x`, which the modes displace by `bends`, written once for all scalars.
+    /// Position at time `t` of the point `x` with the modal displacements `bends`, generic in the scalar.
     fn place<S: Scalar>(&self, t: S, x: &Vector<D>, bends: &[Vector<D>]) -> [S; D] {
         let angle = total(&self.turn, t);
         let (sine, cosine) = (angle.sin(), angle.cos());
@@ -172,7 +174,7 @@ impl<const D: usize> BodyMotion<D> {
         })
     }
 
-    /// The arm turned by the rotation vector.
+    /// The arm rotated by the rotation vector.
     fn turned_freely<S: Scalar>(&self, t: S, arm: [S; D]) -> [S; D] {
         let theta: [S; 3] = std::array::from_fn(|k| self.attitude[k].at(t));
         let arm: [S; 3] = std::array::from_fn(|d| if d < D { arm[d] } else { S::constant(0.0) });
@@ -184,7 +186,7 @@ impl<const D: usize> BodyMotion<D> {
         std::array::from_fn(|d| self.shift.iter().fold(S::constant(0.0), |sum, functions| sum + functions[d].at(t)))
     }
 
-    /// Rotation and shift at time `t`; modes are left aside.
+    /// Rotation and translation at time `t`, without modes.
     pub fn pose(&self, t: f64) -> RigidPose<D> {
         if self.turn.is_empty() && self.shift.is_empty() && self.attitude.is_empty() {
             return RigidPose::identity();
@@ -197,7 +199,7 @@ impl<const D: usize> BodyMotion<D> {
         RigidPose { rotation, shift: origin - turned }
     }
 
-    /// Places at time `t` of points at their place before any motion.
+    /// A function from positions before any motion to positions at time `t`.
     pub fn places(&self, t: f64) -> impl Fn(&Vector<D>) -> Vector<D> + '_ {
         let (pose, coordinates) = (self.pose(t), self.coordinates(t));
         move |x| {
@@ -209,13 +211,14 @@ impl<const D: usize> BodyMotion<D> {
         }
     }
 
-    /// Position, velocity and acceleration at time `t` of the point that was at `x` before any motion.
+    /// Position, velocity and acceleration at time `t` of the point that is at `x` before any motion.
     pub fn kinematics(&self, t: f64, x: &Vector<D>) -> Kinematics<D> {
         let bends: Vec<Vector<D>> = self.shapes().map(|shape| shape.at(x)).collect();
         self.kinematics_of(t, x, &bends)
     }
 
-    /// The same where the displacements φ_m at `x` are known; without any the rest of the motion is left.
+    /// Position, velocity and acceleration with given modal displacements φ_m at `x`; without any, those of the rigid
+    /// motion.
     pub fn kinematics_of(&self, t: f64, x: &Vector<D>, bends: &[Vector<D>]) -> Kinematics<D> {
         let place = self.place(Jet::variable(t), x, bends);
         Kinematics {
@@ -225,12 +228,12 @@ impl<const D: usize> BodyMotion<D> {
         }
     }
 
-    /// Velocity at time `t` of the point that was at `x` before any motion.
+    /// Velocity at time `t` of the point that is at `x` before any motion.
     pub fn velocity(&self, t: f64, x: &Vector<D>) -> Vector<D> {
         self.kinematics(t, x).velocity
     }
 
-    /// Shapes of the modes.
+    /// Mode shapes of the body.
     pub fn shapes(&self) -> impl Iterator<Item = &ModeShape<D>> {
         self.modes.iter().map(|(shape, _)| shape.as_ref())
     }
@@ -240,17 +243,17 @@ impl<const D: usize> BodyMotion<D> {
         self.modes.iter().map(|(_, function)| function.at(t)).collect()
     }
 
-    /// Coordinates of the modes with their rates.
+    /// Coordinates q_m of the modes with their rates.
     pub fn coordinates_with_rates(&self, t: f64) -> Vec<Jet> {
         self.modes.iter().map(|(_, function)| function.at(Jet::variable(t))).collect()
     }
 
-    /// True when the body bends.
+    /// True when the body deforms.
     pub fn bends(&self) -> bool {
         !self.modes.is_empty() || self.net.is_some()
     }
 
-    /// Angle θ, its rate and its acceleration, nose up positive.
+    /// Angle θ with its rate and acceleration, nose up positive.
     pub fn angle(&self, t: f64) -> Jet {
         total_with_rates(&self.turn, t)
     }
@@ -260,24 +263,24 @@ impl<const D: usize> BodyMotion<D> {
         Vector(self.shift_at(t))
     }
 
-    /// Point about which the body turns, before any motion.
+    /// Centre of rotation before any motion.
     pub fn pivot(&self) -> Vector<D> {
         self.pivot
     }
 
-    /// True when nothing moves.
+    /// True when the body is at rest.
     pub fn is_fixed(&self) -> bool {
         let rests = self.turn.is_empty() && self.shift.is_empty() && self.attitude.is_empty();
         rests && self.modes.is_empty() && self.freedom.is_none() && self.net.is_none()
     }
 
-    /// True when the body turns.
+    /// True when the body rotates.
     pub fn turns(&self) -> bool {
         let freely = self.freedom.as_ref().is_some_and(|f| f.turns());
         freely || !self.turn.is_empty() || !self.attitude.is_empty()
     }
 
-    /// True when all numbers of the law are finite at time `t`.
+    /// True when position, velocity and acceleration are finite at time `t`.
     pub fn is_finite(&self, t: f64) -> bool {
         let k = self.kinematics(t, &self.pivot);
         let angle = self.angle(t);
@@ -285,7 +288,7 @@ impl<const D: usize> BodyMotion<D> {
         bend && k.position.is_finite() && k.velocity.is_finite() && angle.value.is_finite() && angle.first.is_finite()
     }
 
-    /// How the motion repeats; a steady rotation does after each turn.
+    /// Periodicity of the motion; a rotation at a constant rate is periodic with one revolution.
     pub fn repeat(&self) -> Repeat {
         let turns = self.turn.iter().map(|function| match function {
             TimeFunction::Steady(rate) if *rate != 0.0 => Repeat::Every(std::f64::consts::TAU / rate.abs()),
@@ -295,7 +298,7 @@ impl<const D: usize> BodyMotion<D> {
         common(turns.chain(others.map(TimeFunction::repeat)))
     }
 
-    /// Angular frequencies of its sines.
+    /// Angular frequencies of the sines of the motion.
     pub(super) fn frequencies(&self) -> impl Iterator<Item = f64> {
         let modes = self.modes.iter().map(|(_, function)| function);
         self.turn.iter().chain(self.shift.iter().flatten()).chain(modes).filter_map(|function| match function {

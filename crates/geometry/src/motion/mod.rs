@@ -1,8 +1,9 @@
-//! Motion of bodies: x(t), and from it v(t).
+//! Motion of bodies: x(t), and v(t) derived from it.
 //!
-//! [`Motions`] holds one [`BodyMotion`] for each body, by hand ([`Motions::new`]) or from a case ([`Motions::of_case`]); a [`RigidPose`] is where a law has got to. Velocities are never written
-//! down a second time: marching takes differences of positions, with the formula it uses for the state, and what needs the
-//! velocity at an instant gets it by differentiating the same law (`math::jet`).
+//! [`Motions`] holds one [`BodyMotion`] for each body, constructed directly ([`Motions::new`]) or from a case
+//! ([`Motions::of_case`]). A [`RigidPose`] is the position and orientation at one time. Velocities are never coded a
+//! second time: the time integration takes differences of positions with the same formula as for the state, and
+//! velocities at an instant follow from differentiating the same law (`math::jet`).
 mod freedom;
 mod from_case;
 mod law;
@@ -29,22 +30,22 @@ pub use surface_net::{Carried, NetDisplacement, SurfaceNet, tangents};
 pub use time_function::MOST_PERIODS;
 pub use time_function::{Repeat, TimeFunction};
 
-/// Relative difference of two frequencies that count as one.
+/// Relative difference below which two frequencies are equal.
 const SAME: f64 = 1e-9;
 
-/// The motion of every body.
+/// The motions of all bodies, in units of the solver.
 #[derive(Clone, Debug)]
 pub struct Motions<const D: usize> {
     bodies: Vec<BodyMotion<D>>,
     general: BodyMotion<D>,
-    /// Shapes that forces are computed on.
+    /// Mode shapes on which generalised forces are computed.
     forces: Vec<ModeShape<D>>,
-    /// Period of forces on bodies that coordinates of their own move.
+    /// Period of the forces on bodies whose coordinates are unknowns.
     forced: Option<f64>,
 }
 
 impl<const D: usize> Motions<D> {
-    /// Bodies that move by these laws.
+    /// Bodies with these motions.
     pub fn new(bodies: Vec<BodyMotion<D>>) -> Self {
         Self { bodies, general: BodyMotion::fixed(), forces: Vec::new(), forced: None }
     }
@@ -54,12 +55,12 @@ impl<const D: usize> Motions<D> {
         Self::new(vec![BodyMotion::fixed(); n])
     }
 
-    /// Hands a body over to coordinates that are unknowns, see [`BodyMotion::with_freedom`].
+    /// Replaces the motion of a body by one whose coordinates are unknowns, see [`BodyMotion::with_freedom`].
     pub fn free(&mut self, body: usize, motion: BodyMotion<D>) {
         self.bodies[body] = motion;
     }
 
-    /// Says that forces on such bodies repeat after `period`.
+    /// Sets the period of the forces on bodies whose coordinates are unknowns.
     pub fn force_with(&mut self, period: f64) {
         self.forced = Some(period);
     }
@@ -69,7 +70,8 @@ impl<const D: usize> Motions<D> {
         &self.bodies[body]
     }
 
-    /// Shapes of the flexible modes of `[gaf]`, in their order, where a harmonic balance computes forces on them.
+    /// Mode shapes of the flexible modes of `[gaf]`, in their order, where a harmonic balance computes generalised
+    /// forces.
     pub fn shapes_of_forces(&self) -> &[ModeShape<D>] {
         &self.forces
     }
@@ -84,7 +86,7 @@ impl<const D: usize> Motions<D> {
         self.bodies.is_empty()
     }
 
-    /// What a rigid cloud follows: the motion of the bodies, which is one, or that of `[motion]` without bodies.
+    /// Motion of a rigid cloud: the common motion of the bodies, or that of `[motion]` without bodies.
     pub fn cloud(&self) -> &BodyMotion<D> {
         self.bodies.first().unwrap_or(&self.general)
     }
@@ -94,7 +96,7 @@ impl<const D: usize> Motions<D> {
         self.laws().any(|law| !law.is_fixed())
     }
 
-    /// The common period of all motions; `None` when some never repeats, or nothing moves.
+    /// Common period of all motions; `None` when one of them is not periodic, or when nothing moves.
     pub fn period(&self) -> Option<f64> {
         match time_function::common(self.laws().map(BodyMotion::repeat)) {
             Repeat::Every(period) => Some(period),
@@ -103,7 +105,7 @@ impl<const D: usize> Motions<D> {
         }
     }
 
-    /// Angular frequencies of all sines, rising, each once.
+    /// Angular frequencies of all sines, ascending and distinct.
     pub fn frequencies(&self) -> Vec<f64> {
         let mut all: Vec<f64> = self.laws().flat_map(BodyMotion::frequencies).collect();
         all.sort_by(f64::total_cmp);
@@ -111,7 +113,8 @@ impl<const D: usize> Motions<D> {
         all
     }
 
-    /// Those frequencies as multiples of the common one, rising, which is the first harmonic of a balance; empty where nothing repeats.
+    /// These frequencies as multiples of the common one, which is the first harmonic of a harmonic balance; ascending,
+    /// empty without a common period.
     pub fn multiples(&self) -> Vec<usize> {
         let Some(period) = self.period() else { return Vec::new() };
         self.frequencies().iter().map(|omega| (omega * period / std::f64::consts::TAU).round() as usize).collect()

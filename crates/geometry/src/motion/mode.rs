@@ -1,27 +1,29 @@
-//! The shape of a mode: how far every point of a body goes when the coordinate of the mode is one.
+//! Mode shapes: displacement of every point of a body for a modal coordinate of one.
 //!
-//! A file gives displacements u_k at points X_k. Between them φ is the radial cubic with a linear part,
+//! A file gives displacements u_k at points X_k. Between them, φ is a cubic radial basis function with a linear part,
 //!
 //! φ(X) = a + B (X − c) + Σ_k w_k |P (X − X_k)|³, φ(X_k) = u_k, Σ_k w_k = 0, Σ_k w_k (X_k − c) = 0,
 //!
-//! the interpolant of Duchon (1977): linear fields, and with them shifts and linearised rotations, come back to round-off,
-//! far away φ grows linearly as they do, and two derivatives are continuous. P projects on the line or plane that the points lie in,
-//! when they do (a beam, a plate): the shape then does not change across it. Else P is the identity. Where a file has more points than a full
-//! system can be solved for, φ passes through some of them, chosen one after another where it misses most ([`super::mode_points`]).
+//! the interpolant of Duchon (1977). It reproduces linear fields, and hence translations and linearised rotations, to
+//! round-off, grows linearly far away, and has two continuous derivatives. P projects onto the line or plane in which
+//! the points lie, if they do (a beam or a plate), so that the shape is constant across it; otherwise P is the
+//! identity. When a file has more points than a dense system can be solved for, φ interpolates a selection of them,
+//! chosen one after another at the greatest error ([`super::mode_points`]).
 use super::mode_points;
 use crate::case::ModeTable;
 use crate::math::least_squares::Fit;
 use crate::math::{Vector, dense};
 
-/// Extent of the points across a line or plane, over their extent along it, below which they count as lying in it: chords
-/// of sections are a thousand times their camber at most.
+/// Ratio of the extent of the points across a line or plane to the extent along it below which they count as lying in
+/// it. The chord of a section is at most a thousand times its camber.
 const FLAT: f64 = 1e-3;
-/// Most points that φ passes through: it is found from a full system with as many unknowns.
+/// Greatest number of interpolation points; the dense system has as many unknowns.
 pub(super) const MOST_KNOTS: usize = 2000;
-/// Part of the greatest displacement that a linear field may miss and be told to be exact: digits of files in double precision.
+/// Error of a linear field, as a fraction of the greatest displacement, below which it is exact within the digits of a
+/// file.
 const LINEAR: f64 = 1e-12;
 
-/// Displacement of every point per unit of the coordinate of a mode.
+/// Displacement field per unit of a modal coordinate.
 #[derive(Clone, Debug)]
 pub struct ModeShape<const D: usize> {
     centre: Vector<D>,
@@ -37,23 +39,23 @@ pub struct ModeShape<const D: usize> {
     within: [Vector<D>; D],
     /// Greatest displacement in the file.
     size: f64,
-    /// Corners of the box around the points of the file.
+    /// Corners of the bounding box of the points of the file.
     corners: [Vector<D>; 2],
-    /// A part behind a hinge that moves against the rest.
+    /// Deflection of a control surface behind a hinge.
     hinge: Option<Hinge<D>>,
-    /// File that the points are from, where they are from one.
+    /// File of the points, if there is one.
     pub(super) file: Option<String>,
-    /// What was mended of the points, and what of them is doubtful.
+    /// Remarks about repaired and doubtful points.
     pub(super) remarks: Vec<String>,
 }
 
-/// φ = w(X) M (X − l): what lies behind a hinge at l moves linearly about it, w rising from 0 to 1 along x over the blend,
-/// w = s²(3 − 2s).
+/// Deflection about a hinge, φ = w(X) M (X − l): the part behind the hinge l moves linearly about it; w = s²(3 − 2s)
+/// increases from 0 to 1 along x over the blend length.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Hinge<const D: usize> {
-    /// The hinge l.
+    /// Hinge point l.
     pub place: Vector<D>,
-    /// Length of the blend, half of it on either side of the hinge.
+    /// Blend length, centred on the hinge.
     pub blend: f64,
     /// Rows of M.
     pub rows: [Vector<D>; D],
@@ -90,19 +92,19 @@ impl<const D: usize> Hinge<D> {
     }
 }
 
-/// A mode at one point.
+/// Value and derivatives of a mode shape at one point.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Expansion<const D: usize> {
-    /// φ.
+    /// Displacement φ.
     pub value: Vector<D>,
-    /// ∂φ_i/∂X_j, rows i.
+    /// Gradient ∂φ_i/∂X_j, rows i.
     pub gradient: [Vector<D>; D],
-    /// ∂²φ_i/∂X_j∂X_k.
+    /// Second derivatives ∂²φ_i/∂X_j∂X_k.
     pub second: [[Vector<D>; D]; D],
 }
 
 impl<const D: usize> ModeShape<D> {
-    /// The shape through the points of a table; `None` when points lie so near to one another that it is not determined.
+    /// The shape through the points of a table; `None` when points lie so close together that it is not determined.
     pub fn new(table: &ModeTable) -> Option<Self> {
         let plain = |list: &[[f64; 3]]| list.iter().map(|x| Vector::from_fn(|d| x[d])).collect::<Vec<Vector<D>>>();
         let (points, shifts) = (plain(&table.points), plain(&table.displacements));
@@ -129,12 +131,12 @@ impl<const D: usize> ModeShape<D> {
         Some(shape)
     }
 
-    /// What lies behind a hinge moves against the rest; `size` is about how far.
+    /// The shape of a deflection about a hinge; `size` is its approximate greatest displacement.
     pub fn hinged(hinge: Hinge<D>, size: f64) -> Self {
         Self { size, hinge: Some(hinge), ..Self::resting(hinge.place) }
     }
 
-    /// Nothing moves.
+    /// The zero shape.
     fn resting(centre: Vector<D>) -> Self {
         Self {
             centre,
@@ -151,7 +153,7 @@ impl<const D: usize> ModeShape<D> {
         }
     }
 
-    /// Adds what takes the displacements `rest` at the points.
+    /// Adds the interpolant of the displacements `rest` at the points; `None` when it is not determined.
     pub(super) fn interpolate(
         &mut self,
         points: &[Vector<D>],
@@ -160,7 +162,7 @@ impl<const D: usize> ModeShape<D> {
     ) -> Option<()> {
         let (n, m) = (points.len(), axes.len());
         self.knots = points.iter().map(|x| self.projected(x)).collect();
-        // in units of the extent of the points, so that all blocks of the matrix are of one size
+        // scaled by the extent of the points, so that all blocks of the matrix have similar magnitude
         let length = axes.first()?.1;
         let (width, tail) = (n + 1 + m, |x: &Vector<D>, k: usize| (*x - self.centre).dot(&axes[k].0) / length);
         let mut matrix = vec![0.0; width * width];
@@ -190,7 +192,7 @@ impl<const D: usize> ModeShape<D> {
         Vector::from_fn(|i| self.within[i].dot(x))
     }
 
-    /// φ at `x`.
+    /// Displacement φ at `x`.
     pub fn at(&self, x: &Vector<D>) -> Vector<D> {
         let (arm, place) = (*x - self.centre, self.projected(x));
         let behind = self.hinge.as_ref().map_or(Vector::ZERO, |h| h.moved(x) * h.weight(x)[0]);
@@ -226,28 +228,28 @@ impl<const D: usize> ModeShape<D> {
         self.size
     }
 
-    /// Corners of the box around the points of the file.
+    /// Corners of the bounding box of the points of the file.
     pub fn corners(&self) -> [Vector<D>; 2] {
         self.corners
     }
 
-    /// The file that the points are from, where they are from one.
+    /// Name of the file of the points, if there is one.
     pub fn file(&self) -> Option<&str> {
         self.file.as_deref()
     }
 
-    /// The points that the shape passes through, where it is not a linear field.
+    /// The points that the shape interpolates; empty for a linear field.
     pub fn knots(&self) -> &[Vector<D>] {
         &self.knots
     }
 
-    /// What was mended of the points of the file, and what of them is doubtful.
+    /// Remarks about repaired and doubtful points of the file.
     pub fn remarks(&self) -> &[String] {
         &self.remarks
     }
 }
 
-/// Directions in which points extend, orthonormal, with half of that extent, farthest first.
+/// Principal directions of the points, orthonormal, with half of the extent along each, in descending order.
 pub(super) fn axes<const D: usize>(points: &[Vector<D>], centre: &Vector<D>) -> Vec<(Vector<D>, f64)> {
     let mut axes: Vec<(Vector<D>, f64)> = Vec::new();
     let mut left: Vec<Vector<D>> = points.iter().map(|x| *x - *centre).collect();
@@ -264,7 +266,7 @@ pub(super) fn axes<const D: usize>(points: &[Vector<D>], centre: &Vector<D>) -> 
     axes
 }
 
-/// a and the rows of B of the linear field that is nearest to the displacements.
+/// Offset a and rows of B of the best linear approximation of the displacements.
 fn linear<const D: usize>(
     points: &[Vector<D>],
     shifts: &[Vector<D>],

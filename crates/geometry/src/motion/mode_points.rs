@@ -1,9 +1,10 @@
-//! Points of a mode file: what of them is one point, what is doubtful, and which of many the shape passes through.
+//! Preparation of the points of a mode file: merging, plausibility, and selection.
 //!
-//! An interpolant repeats every mistake of its points, and makes more of it: two points next to one another that differ are a slope. Points that
-//! are one within the digits of a file are joined; the others are held against what their neighbours say of them (leave-one-out, S. Rippa,
-//! Advances in Computational Mathematics 11, 1999). Of many points those are chosen at which the shape through the ones before misses
-//! most (T. Rendall and C. Allen, Journal of Computational Physics 228, 2009).
+//! An interpolant reproduces every error of its points and amplifies it: two neighbouring points with different
+//! displacements are a steep slope. Points that coincide within the digits of a file are merged. The others are
+//! compared with the values predicted by their neighbours (leave-one-out, S. Rippa, Advances in Computational
+//! Mathematics 11, 1999). When there are many points, those are selected at which the shape through the previous ones
+//! has the greatest error (T. Rendall and C. Allen, Journal of Computational Physics 228, 2009).
 use std::collections::HashSet;
 
 use rstar::RTree;
@@ -13,50 +14,51 @@ use super::mode::{MOST_KNOTS, ModeShape, axes};
 use crate::case::{ModeFile, ModeTable};
 use crate::math::{Bounds, Vector};
 
-/// What a remark begins with that makes results doubtful.
+/// Prefix of a remark about a point that makes results doubtful.
 pub const WARNING: &str = "warning: ";
-/// Points nearer than this part of the extent of all are one point.
+/// Distance, as a fraction of the extent of all points, below which points coincide.
 const NEAR: f64 = 1e-4;
-/// Part of the greatest displacement by which two points that are one may differ.
+/// Permitted difference of the displacements of coincident points, as a fraction of the greatest displacement.
 const ALIKE: f64 = 0.01;
-/// Part of the greatest displacement that an interpolant may miss at its own points.
+/// Permitted error of an interpolant at its own points, as a fraction of the greatest displacement.
 const MISSED: f64 = 1e-6;
-/// Part of the greatest displacement that a shape through some of the points misses at the others, where no more are taken.
+/// Error at the other points at which the selection of points ends, as a fraction of the greatest displacement.
 const CLOSE: f64 = 1e-5;
-/// The same where it is doubtful.
+/// Error at the other points above which the shape is doubtful, as a fraction of the greatest displacement.
 const OFF: f64 = 0.01;
-/// Points that the first shape through some passes through.
+/// Number of points of the first selection.
 const FIRST: usize = 64;
-/// Neighbours that tell what a point should be.
+/// Number of neighbours from which the displacement of a point is predicted.
 const NEIGHBOURS: usize = 16;
-/// Most points that are held against their neighbours.
+/// Greatest number of points that are compared with their neighbours.
 const MOST_HELD: usize = 2000;
-/// Part of the greatest displacement by which a point differs from what its neighbours say where it is doubtful.
+/// Difference from the prediction, as a fraction of the greatest displacement, above which a point is doubtful.
 const DOUBTFUL: f64 = 0.05;
-/// Part of that by which its neighbours then differ without it.
+/// Fraction of this difference below which its neighbours must agree among themselves without the point.
 const ALONE: f64 = 0.25;
-/// Part of the greatest displacement by which most points differ from what their neighbours say where they are too few.
+/// Typical difference from the prediction, as a fraction of the greatest displacement, above which there are too few
+/// points.
 const COARSE: f64 = 0.1;
 
-/// Why the points of a file make no shape.
+/// Reason why the points of a file do not define a shape.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) enum Flaw {
-    /// They do not determine it.
+    /// The points do not determine a shape.
     Crowded,
-    /// Two of them are one point, but move differently.
+    /// Two coincident points have different displacements.
     Jump {
-        /// Lines of both.
+        /// Line numbers of both points.
         lines: [usize; 2],
-        /// Their distance.
+        /// Distance between the points.
         distance: f64,
         /// Difference of their displacements.
         difference: f64,
-        /// Greatest displacement of all.
+        /// Greatest displacement of all points.
         greatest: f64,
     },
 }
 
-/// The shape through the points of the file called `name`.
+/// The shape through the points of the file `name`.
 pub(super) fn shape<const D: usize>(name: &str, file: &ModeFile) -> Result<ModeShape<D>, Flaw> {
     let (table, lines, mut remarks) = joined(name, file)?;
     let mut shape = ModeShape::<D>::new(&table).ok_or(Flaw::Crowded)?;
@@ -99,12 +101,12 @@ fn distance(a: &[f64; 3], b: &[f64; 3]) -> f64 {
     (0..3).map(|d| (a[d] - b[d]).powi(2)).sum::<f64>().sqrt()
 }
 
-/// A tree that finds the points near to a place, with their numbers.
+/// A search tree for the points near a position, with their indices.
 fn tree(points: &[[f64; 3]]) -> RTree<GeomWithData<[f64; 3], usize>> {
     RTree::bulk_load(points.iter().enumerate().map(|(k, x)| GeomWithData::new(*x, k)).collect())
 }
 
-/// The points with those that are one joined at their middle, and the lines of the ones that are left.
+/// The points, with coincident ones merged at their mean, and the line number of each remaining point.
 fn joined(name: &str, file: &ModeFile) -> Result<(ModeTable, Vec<usize>, Vec<String>), Flaw> {
     let ModeFile { table, lines, .. } = file;
     let extent = Bounds::around(&table.points.iter().map(|x| Vector(*x)).collect::<Vec<_>>()).extent().norm();
@@ -147,7 +149,7 @@ fn joined(name: &str, file: &ModeFile) -> Result<(ModeTable, Vec<usize>, Vec<Str
     Ok((table, left().map(|k| lines[k]).collect(), remarks))
 }
 
-/// What is doubtful of a point, or of all, held against what their neighbours say.
+/// A remark when a point, or the set of points, disagrees with the prediction by the neighbours.
 fn doubt<const D: usize>(table: &ModeTable, lines: &[usize], size: f64) -> Option<String> {
     let n = table.points.len();
     if n <= NEIGHBOURS {
@@ -155,7 +157,7 @@ fn doubt<const D: usize>(table: &ModeTable, lines: &[usize], size: f64) -> Optio
     }
     let tree = tree(&table.points);
     let near = |k: usize| tree.nearest_neighbor_iter(&table.points[k]).map(|p| p.data).filter(move |j| *j != k);
-    // what the points around `k`, but for `but`, say of it
+    // displacement of point `k` as predicted by the points around it, except `but`
     let said = |k: usize, but: Option<usize>| {
         let around: Vec<usize> = near(k).filter(|j| Some(*j) != but).take(NEIGHBOURS).collect();
         let of = |list: &[[f64; 3]]| around.iter().map(|j| list[*j]).collect();
@@ -186,7 +188,7 @@ fn doubt<const D: usize>(table: &ModeTable, lines: &[usize], size: f64) -> Optio
     ))
 }
 
-/// The shape through some of many points; `linear` is the linear field nearest to all.
+/// The shape through a selection of many points; `linear` is the best linear approximation of all of them.
 pub(super) fn thinned<const D: usize>(
     linear: &ModeShape<D>,
     (points, shifts): (&[Vector<D>], &[Vector<D>]),
@@ -194,7 +196,7 @@ pub(super) fn thinned<const D: usize>(
 ) -> Option<ModeShape<D>> {
     let rest: Vec<Vector<D>> = points.iter().zip(shifts).map(|(x, u)| *u - linear.at(x)).collect();
     let mut chosen: Vec<usize> = Vec::new();
-    // the outermost points, so that no linear field is zero at all that are chosen
+    // the outermost points, so that no linear field vanishes at all selected points
     for (axis, _) in axes {
         let along = |k: &usize| points[*k].dot(axis);
         chosen.extend((0..points.len()).max_by(|a, b| along(a).total_cmp(&along(b))));
@@ -216,7 +218,7 @@ pub(super) fn thinned<const D: usize>(
     }
 }
 
-/// Adds points until there are `target`, those with the greatest errors first, and none next to another that is added now.
+/// Adds points with the greatest errors until there are `target`, but not two neighbours at the same time.
 fn take<const D: usize>(
     chosen: &mut Vec<usize>,
     points: &[Vector<D>],

@@ -1,4 +1,4 @@
-//! Points that are asked for at many times: what the modes of their body do to them is found once.
+//! Positions of fixed sets of points at many times: modal displacements at the points are evaluated once.
 use super::law::BodyMotion;
 use super::surface_net::Carried;
 use crate::math::Vector;
@@ -9,19 +9,19 @@ use crate::math::parallel::sweep;
 #[derive(Clone, Debug)]
 pub struct PointTrajectory<const D: usize> {
     law: BodyMotion<D>,
-    /// φ of each mode at each point.
+    /// Displacement φ of each mode at each point.
     shifts: Vec<Vec<Vector<D>>>,
-    /// How each point goes with the surface of a body made of particles, and whether it is on it.
+    /// Relation of each point to the surface of a solid of particles, and whether the point lies on it.
     carried: Vec<(Carried<D>, bool)>,
 }
 
 impl<const D: usize> PointTrajectory<D> {
-    /// Points of a body that follows `law`, at their places before any motion.
+    /// Trajectories of points of a body with the motion `law`; `points` are positions before any motion.
     pub fn new(law: &BodyMotion<D>, points: &[Vector<D>]) -> Self {
         Self::of_those(law, points, |_| true)
     }
 
-    /// The same for those points that `moves`; modes leave the others where they are.
+    /// Trajectories for which the modes displace only the points selected by `moves`.
     pub fn of_those(law: &BodyMotion<D>, points: &[Vector<D>], moves: impl Fn(usize) -> bool + Send + Sync) -> Self {
         let at = |shape: &super::ModeShape<D>| {
             let mut all = vec![Vector::ZERO; points.len()];
@@ -31,22 +31,22 @@ impl<const D: usize> PointTrajectory<D> {
         Self { law: law.clone(), shifts: law.shapes().map(at).collect(), carried: Vec::new() }
     }
 
-    /// The same around and on a body made of particles, whose points go as `carried` says; true for those on the surface.
+    /// Trajectories of points on and around a solid of particles, given by `carried`; true for points on the surface.
     pub fn carried_by(self, carried: Vec<(Carried<D>, bool)>) -> Self {
         Self { carried, ..self }
     }
 
-    /// The law that the points follow.
+    /// The motion of the body.
     pub fn law(&self) -> &BodyMotion<D> {
         &self.law
     }
 
-    /// Places at time `t`: of point number `k`, which is at `x` before any motion.
+    /// A function to the position at time `t` of point number `k`, which is at `x` before any motion.
     pub fn at(&self, t: f64) -> impl Fn(usize, &Vector<D>) -> Vector<D> + Send + Sync + '_ {
         self.with(t, &[])
     }
 
-    /// The same where the coordinates of bodies that are unknowns are `jets`.
+    /// The same function for the values `jets` of the unknown coordinates of all bodies.
     pub fn with(&self, t: f64, jets: &[Jet]) -> impl Fn(usize, &Vector<D>) -> Vector<D> + Send + Sync + use<'_, D> {
         let law = self.law.momentary(t, jets);
         let (pose, coordinates) = (law.pose(t), law.coordinates(t));

@@ -2,40 +2,40 @@
 use crate::math::Vector;
 use crate::math::jet::Scalar;
 
-/// A rotation followed by a shift.
+/// A rotation followed by a translation, x ↦ R x + s.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RigidPose<const D: usize> {
     /// Rows of the rotation matrix R.
     pub rotation: [Vector<D>; D],
-    /// Shift s.
+    /// Translation s.
     pub shift: Vector<D>,
 }
 
 impl<const D: usize> RigidPose<D> {
-    /// Nothing moves.
+    /// The identity.
     pub fn identity() -> Self {
         Self { rotation: std::array::from_fn(Vector::axis), shift: Vector::ZERO }
     }
 
-    /// Where the point `x` goes.
+    /// Image of the point `x`.
     #[inline]
     pub fn point(&self, x: &Vector<D>) -> Vector<D> {
         self.direction(x) + self.shift
     }
 
-    /// Where the direction `v` points.
+    /// Image of the direction `v`.
     #[inline]
     pub fn direction<S: Scalar>(&self, v: &Vector<D, S>) -> Vector<D, S> {
         Vector::from_fn(|d| v.along(&self.rotation[d]))
     }
 
-    /// The point that goes to `x`.
+    /// The point whose image is `x`.
     #[inline]
     pub fn inverse_point(&self, x: &Vector<D>) -> Vector<D> {
         self.inverse_direction(&(*x - self.shift))
     }
 
-    /// The direction that goes to `v`.
+    /// The direction whose image is `v`.
     #[inline]
     pub fn inverse_direction<S: Scalar>(&self, v: &Vector<D, S>) -> Vector<D, S> {
         let mut back = Vector::zero();
@@ -45,13 +45,13 @@ impl<const D: usize> RigidPose<D> {
         back
     }
 
-    /// The pose that undoes this one.
+    /// The inverse pose.
     pub fn inverse(&self) -> Self {
         let rotation = std::array::from_fn(|i| Vector::from_fn(|j| self.rotation[j][i]));
         Self { rotation, shift: -self.inverse_direction(&self.shift) }
     }
 
-    /// This pose, then `next`.
+    /// The composition of this pose followed by `next`.
     pub fn then(&self, next: &Self) -> Self {
         let columns: [Vector<D>; D] =
             std::array::from_fn(|j| next.direction(&Vector::from_fn(|i| self.rotation[i][j])));
@@ -59,7 +59,7 @@ impl<const D: usize> RigidPose<D> {
         Self { rotation, shift: next.point(&self.shift) }
     }
 
-    /// What takes the pose `from` to this one.
+    /// The pose that, applied after `from`, gives this one.
     pub fn relative_to(&self, from: &Self) -> Self {
         from.inverse().then(self)
     }

@@ -1,20 +1,20 @@
-//! Tables of motion: times with displacements and angles.
+//! Motion tables: displacements and angles at given times.
 use std::f64::consts::PI;
 
 use crate::case::{MotionTable, separator};
 
-/// Columns of a table.
+/// Columns of a motion table.
 #[derive(Debug, Default)]
 pub(super) struct Samples {
     pub(super) time: Vec<f64>,
     /// Displacements along x, y, z.
     pub(super) shift: [Option<Vec<f64>>; 3],
-    /// Angles, radians.
+    /// Angles [rad].
     pub(super) angle: Option<Vec<f64>>,
 }
 
 impl Samples {
-    /// The lists of a case.
+    /// The lists of a case as a table.
     pub(super) fn of(table: &MotionTable) -> Self {
         let lengths = |list: &Option<Vec<crate::case::Length>>| list.as_ref().map(|l| l.iter().map(|x| x.0).collect());
         Self {
@@ -24,7 +24,8 @@ impl Samples {
         }
     }
 
-    /// The columns of a text with a header, separated by commas, semicolons or tabs; lines that begin with `#` are comments.
+    /// Parses a text with a header; columns are separated by commas, semicolons or tabs; lines that start with `#` are
+    /// comments.
     pub(super) fn parse(text: &str, periodic: bool, dimension: usize) -> Result<Self, String> {
         let mut reader = csv::ReaderBuilder::new()
             .comment(Some(b'#'))
@@ -74,7 +75,7 @@ impl Samples {
     }
 }
 
-/// What is wrong with a cell.
+/// Message about a cell that is not a number.
 fn no_number(cell: &str, row: &csv::StringRecord) -> String {
     let line = row.position().map_or_else(String::new, |p| format!("line {}: ", p.line()));
     let comma = cell.replacen(',', ".", 1).parse::<f64>().is_ok();

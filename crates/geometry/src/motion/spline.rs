@@ -1,12 +1,13 @@
-//! Cubic splines in time.
+//! Cubic splines of time.
 //!
-//! Cubic between knots and twice continuously differentiable (de Boor, A Practical Guide to Splines, 1978, ch. 4). The
-//! second derivatives M solve h_{i−1}M_{i−1} + 2(h_{i−1} + h_i)M_i + h_i M_{i+1} = 6(Δ_i − Δ_{i−1}), Δ_i = (y_{i+1} − y_i)/h_i.
-//! A periodic table closes the system on itself; its corners are taken out by one rank-one correction (Sherman and
-//! Morrison 1950). Any other table begins and ends with slope zero, and its ends are held: the motion starts from rest.
+//! Piecewise cubic and twice continuously differentiable (de Boor, A Practical Guide to Splines, 1978, ch. 4). The
+//! second derivatives M solve h_{i−1}M_{i−1} + 2(h_{i−1} + h_i)M_i + h_i M_{i+1} = 6(Δ_i − Δ_{i−1}), Δ_i = (y_{i+1} −
+//! y_i)/h_i. For a periodic table the system is cyclic; its corner elements are handled by a rank-one correction
+//! (Sherman and Morrison 1950). Any other spline has zero slope at both ends and is continued by constants, so that the
+//! motion starts from rest.
 use crate::math::jet::Scalar;
 
-/// A cubic spline through values at rising times.
+/// A cubic spline through values at ascending times.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Spline {
     times: Vec<f64>,
@@ -16,8 +17,8 @@ pub struct Spline {
 }
 
 impl Spline {
-    /// The spline through `values` at `times`, which rise and are at least two; the last value of a periodic table repeats
-    /// the first.
+    /// The spline through `values` at `times`, which are ascending and at least two. The last value of a periodic table
+    /// must equal the first.
     pub fn new(times: &[f64], values: &[f64], periodic: bool) -> Self {
         let bend = if periodic { closed(times, values) } else { clamped(times, values) };
         Self { times: times.to_vec(), values: values.to_vec(), bend, periodic }
@@ -37,7 +38,7 @@ impl Spline {
         t.map(|_| self.piece(x))
     }
 
-    /// The period of a periodic table.
+    /// Period of a periodic spline.
     pub fn period(&self) -> Option<f64> {
         let (start, end) = self.range();
         self.periodic.then_some(end - start)
@@ -59,7 +60,7 @@ impl Spline {
     }
 }
 
-/// Second derivatives with slope zero at both ends.
+/// Second derivatives for zero slope at both ends.
 fn clamped(times: &[f64], values: &[f64]) -> Vec<f64> {
     let n = times.len();
     let h = |i: usize| times[i + 1] - times[i];
@@ -76,11 +77,11 @@ fn clamped(times: &[f64], values: &[f64]) -> Vec<f64> {
     eliminate(&(0..n).map(row).collect::<Vec<_>>())
 }
 
-/// Second derivatives of a table that closes on itself; the last is the first.
+/// Second derivatives of a periodic spline; the last equals the first.
 fn closed(times: &[f64], values: &[f64]) -> Vec<f64> {
     let n = times.len() - 1;
     if n < 3 {
-        // fewer than three different points: a table out and back is at rest at both
+        // fewer than three distinct points: the table moves out and back and is at rest at both
         return clamped(times, values);
     }
     let h = |i: usize| times[i % n + 1] - times[i % n];
@@ -90,7 +91,7 @@ fn closed(times: &[f64], values: &[f64]) -> Vec<f64> {
         [h(before), 2.0 * (h(before) + h(i)), h(i), 6.0 * (slope(i) - slope(before))]
     };
     let mut rows: Vec<[f64; 4]> = (0..n).map(row).collect();
-    // corners c at (0, n − 1) and (n − 1, 0): A = T + u vᵀ with u = (g, 0, …, c), v = (1, 0, …, c/g)
+    // corner elements c at (0, n − 1) and (n − 1, 0): A = T + u vᵀ with u = (g, 0, …, c), v = (1, 0, …, c/g)
     let corner = rows[0][0];
     let gamma = -rows[0][1];
     rows[0][1] -= gamma;
@@ -108,7 +109,8 @@ fn closed(times: &[f64], values: &[f64]) -> Vec<f64> {
     bend
 }
 
-/// Solves a tridiagonal system of rows (lower, diagonal, upper, right); diagonally dominant, so without pivoting.
+/// Solves a tridiagonal system with rows (lower, diagonal, upper, right-hand side); diagonally dominant, hence without
+/// pivoting.
 fn eliminate(rows: &[[f64; 4]]) -> Vec<f64> {
     let mut upper = vec![0.0; rows.len()];
     let mut x = vec![0.0; rows.len()];

@@ -1,48 +1,51 @@
-//! Surfaces of bodies that are made of particles: their displacement is that of nodes, and carries what is on them and around.
+//! Displacement of the surface of a solid of particles, and of the gas cloud around it.
 //!
-//! *On the surface* a point goes where a fit through the nearest nodes takes it, which weighs those at hand most (w = 1/r⁴: points
-//! that are nodes go as these do). In the plane the fit is α + βz + γz² with complex numbers, in space a small rigid motion, a
-//! stretch and a parabola along the surface: rigid motions come back to round-off, those of finite angle in the plane as well.
-//! *Around it* the fit is α + βz, in space a small rigid motion with a stretch, over nodes as far away as the point is from the surface
-//! and half as much again, so that the cloud near a body turns as the body does and forgets its waves farther away; nodes are
-//! gathered in groups that grow with the distance. All are linear in the displacements of the nodes, so that differences of positions stay exact.
+//! *On the surface*, the displacement of a point is a weighted fit to the nearest surface nodes with weights w = 1/r⁴,
+//! so that points at
+//! nodes move with them. In 2-D the fit is α + βz + γz² with complex numbers; in 3-D it is a small rigid motion, a
+//! uniform stretch and a parabola along the surface. Rigid motions are reproduced to round-off, in 2-D for finite
+//! angles too. *Around the surface*, the fit is α + βz, in 3-D a small rigid motion with a stretch, over nodes up to a
+//! distance of 1.5 times that of the point from the surface. The cloud near a body therefore rotates with it, and short
+//! waves of the surface decay with the distance. Nodes are combined into groups whose size increases with the distance.
+//! All fits are linear in the displacements of the nodes, so that differences of positions remain exact.
 use std::collections::BTreeMap;
 
 use crate::math::jet::Jet;
 use crate::math::moving_fit::{Basis, weights};
 use crate::math::{Bounds, Vector};
 
-/// Nodes that carry a point of the surface, in the plane and in space.
+/// Number of nodes in the fit for a point of the surface, in 2-D and 3-D.
 const NEAREST: [usize; 2] = [5, 12];
-/// Cosine of the angle between normals beyond which a node is on another side of the body.
+/// Cosine of the angle between normals below which a node lies on the other side of the body.
 const OTHER_SIDE: f64 = -0.3;
-/// Distance to a node over the spacing of nodes that counts as none: nodes themselves are not divided by it.
+/// Distance to a node, in node spacings, below which a point coincides with the node, so that no division by zero
+/// occurs.
 const AT_NODE: f64 = 3e-3;
-/// Reach of the fit around the surface: in spacings of nodes, and in distances from the surface.
+/// Radius of the fit around the surface: in node spacings, and in distances from the surface.
 const REACH: [f64; 2] = [3.0, 1.5];
-/// Size of a group over that reach, in the plane and in space.
+/// Size of a group relative to this radius, in 2-D and 3-D.
 const GROUP: [f64; 2] = [0.25, 0.4];
 
-/// Nodes that are gathered.
+/// A group of nodes.
 #[derive(Clone, Debug)]
 struct Group<const D: usize> {
     place: Vector<D>,
-    /// Their area.
+    /// Area of the group.
     area: f64,
-    /// Nodes and their part of that area.
+    /// Nodes of the group, each with its fraction of the area.
     members: Vec<(u32, f64)>,
 }
 
-/// Groups of one size.
+/// Groups of equal size.
 #[derive(Clone, Debug)]
 struct Level<const D: usize> {
     size: f64,
     groups: Vec<Group<D>>,
-    /// Number of its first group among those of all levels.
+    /// Index of the first group among those of all levels.
     first: u32,
 }
 
-/// The surface of a body made of particles.
+/// The surface nodes of a solid of particles, arranged in groups.
 #[derive(Clone, Debug)]
 pub struct SurfaceNet<const D: usize> {
     first: usize,
@@ -52,10 +55,10 @@ pub struct SurfaceNet<const D: usize> {
     levels: Vec<Level<D>>,
 }
 
-/// How a point goes with the nodes: u = Σ W_k u_k.
+/// Relation between the displacement of a point and those of the nodes: u = Σ W_k u_k.
 #[derive(Clone, Debug, Default)]
 pub struct Carried<const D: usize> {
-    /// Nodes, or groups of them, and what their displacements do.
+    /// Indices of nodes, or of groups, with the matrices W_k.
     pub parts: Vec<(u32, [[f64; D]; D])>,
 }
 
@@ -67,8 +70,8 @@ pub struct NetDisplacement<const D: usize> {
 }
 
 impl<const D: usize> SurfaceNet<D> {
-    /// Nodes at `place` with the areas `area`, about `spacing` apart; the displacement of the first of them begins with coordinate
-    /// number `first` of all bodies. Nodes without area carry nothing.
+    /// Nodes at the positions `place` with the area vectors `area`, about `spacing` apart. The displacement of the first
+    /// node starts at the coordinate number `first` of all bodies. Nodes of zero area do not affect other points.
     pub fn new(first: usize, place: Vec<Vector<D>>, area: &[Vector<D>], spacing: f64) -> Self {
         let unit = |a: &Vector<D>| if *a == Vector::ZERO { *a } else { a.unit() };
         let normal: Vec<Vector<D>> = area.iter().map(unit).collect();
@@ -101,17 +104,17 @@ impl<const D: usize> SurfaceNet<D> {
         self.place.len()
     }
 
-    /// True when there are none.
+    /// True when there are no nodes.
     pub fn is_empty(&self) -> bool {
         self.place.is_empty()
     }
 
-    /// Places of the nodes at rest.
+    /// Undeformed positions of the nodes.
     pub fn places(&self) -> &[Vector<D>] {
         &self.place
     }
 
-    /// Displacements where the coordinates of all bodies are `jets`.
+    /// Displacements of nodes and groups for the coordinates `jets` of all bodies.
     pub fn displacement(&self, jets: &[Jet]) -> NetDisplacement<D> {
         let nodes = self.of(jets, |jet| jet.value);
         let group =
@@ -120,13 +123,13 @@ impl<const D: usize> SurfaceNet<D> {
         NetDisplacement { nodes, groups }
     }
 
-    /// What `part` takes of the coordinates of all nodes.
+    /// The quantity `part` of the coordinates of all nodes, as vectors.
     pub fn of(&self, jets: &[Jet], part: impl Fn(&Jet) -> f64) -> Vec<Vector<D>> {
         let of = |k: usize, d: usize| jets.get(self.first + k * D + d).map_or(0.0, &part);
         (0..self.len()).map(|k| Vector::from_fn(|d| of(k, d))).collect()
     }
 
-    /// How the point `x` of the surface goes, where the normal is `normal`, with the nodes.
+    /// Relation for the point `x` on the surface, where the normal is `normal`.
     pub fn on_surface(&self, x: &Vector<D>, normal: &Vector<D>) -> Carried<D> {
         let mut near: Vec<(f64, u32)> = (0..self.len())
             .filter(|k| self.normal[*k] != Vector::ZERO && self.normal[*k].dot(normal) > OTHER_SIDE)
@@ -146,7 +149,7 @@ impl<const D: usize> SurfaceNet<D> {
         fitted(&nodes, along_surface(&nodes, normal))
     }
 
-    /// How the point `x` away from the surface goes with the groups.
+    /// Relation for the point `x` away from the surface.
     pub fn around(&self, x: &Vector<D>) -> Carried<D> {
         let carries = self.place.iter().zip(&self.normal).filter(|(_, n)| **n != Vector::ZERO);
         let nearest = carries.map(|(p, _)| (*p - *x).norm_squared()).fold(f64::INFINITY, f64::min).sqrt();
@@ -159,7 +162,7 @@ impl<const D: usize> SurfaceNet<D> {
         for (g, group) in (level.first..).zip(&level.groups) {
             let r = (group.place - *x).norm() / reach;
             if r < 1.0 && group.area > 0.0 {
-                // smooth, with two derivatives at the end (Wendland 1995)
+                // weight function with two continuous derivatives at the end of its support (Wendland 1995)
                 let weight = group.area * (1.0 - r).powi(4) * (4.0 * r + 1.0);
                 nodes.push((g, (group.place - *x) * (1.0 / reach), weight));
             }
@@ -182,7 +185,7 @@ impl<const D: usize> Carried<D> {
         sum
     }
 
-    /// Where nodes take a point of the surface: what the quantities `nodes` of theirs are there.
+    /// Value at a point of the surface of a quantity given at the nodes.
     pub fn of_nodes(&self, nodes: &[Vector<D>]) -> Vector<D> {
         self.sum(nodes)
     }
@@ -205,7 +208,7 @@ fn gathered<const D: usize>(list: &[usize], place: &[Vector<D>], area: &[Vector<
     Group { place, area: whole, members: list.iter().map(|k| (*k as u32, part(*k))).collect() }
 }
 
-/// The weights of nodes at their offsets in the value at the offset zero.
+/// Weights of nodes, given by their offsets, for the value at the offset zero.
 fn fitted<const D: usize>(nodes: &[(u32, Vector<D>, f64)], basis: Vec<Basis>) -> Carried<D> {
     let of_values: Vec<f64> = nodes.iter().flat_map(|(_, _, w)| [*w; D]).collect();
     let (all, width) = (weights(basis, &of_values), of_values.len());
@@ -213,13 +216,13 @@ fn fitted<const D: usize>(nodes: &[(u32, Vector<D>, f64)], basis: Vec<Basis>) ->
     Carried { parts: nodes.iter().enumerate().map(|(k, node)| (node.0, block(k))).collect() }
 }
 
-/// The same for α + βz in the plane, with α the mean of the values and β their covariance with z over its variance.
+/// Weights for the fit α + βz in 2-D, where α is the weighted mean and β the covariance with z divided by its variance.
 fn turned<const D: usize>(nodes: &[(u32, Vector<D>, f64)]) -> Carried<D> {
     let total: f64 = nodes.iter().map(|n| n.2).sum();
     let mean = nodes.iter().fold(Vector::ZERO, |sum, (_, z, w)| sum + *z * (w / total));
     let variance: f64 = nodes.iter().map(|(_, z, w)| w * (*z - mean).norm_squared()).sum();
     let part = |(k, z, w): &(u32, Vector<D>, f64)| {
-        // w/Σw − w m conj(z − m)/S, a complex number that turns and stretches
+        // w/Σw − w m conj(z − m)/S, a complex number that represents rotation and stretch
         let (d, over) = (*z - mean, if variance > 0.0 { w / variance } else { 0.0 });
         let re = w / total - over * (mean[0] * d[0] + mean[1] * d[1]);
         let im = -over * (mean[1] * d[0] - mean[0] * d[1]);
@@ -229,12 +232,12 @@ fn turned<const D: usize>(nodes: &[(u32, Vector<D>, f64)]) -> Carried<D> {
     Carried { parts: nodes.iter().map(part).collect() }
 }
 
-/// Values of a field at the nodes, and at the offset zero.
+/// Values of a field at the nodes and at the offset zero.
 fn field<const D: usize>(nodes: &[(u32, Vector<D>, f64)], f: impl Fn(&Vector<D>) -> Vector<D>) -> Basis {
     Basis { at_nodes: nodes.iter().flat_map(|(_, d, _)| f(d).0).collect(), asked: f(&Vector::ZERO).0.to_vec() }
 }
 
-/// Shifts, small rotations and the stretch alike on all sides: α + βz in the plane.
+/// Basis of translations, small rotations and uniform stretch; α + βz in 2-D.
 fn rigid<const D: usize>(nodes: &[(u32, Vector<D>, f64)]) -> Vec<Basis> {
     let mut all: Vec<Basis> = (0..D).map(|a| field(nodes, |_| Vector::axis(a))).collect();
     for (a, b) in (0..D).flat_map(|a| (0..a).map(move |b| (a, b))) {
@@ -244,11 +247,11 @@ fn rigid<const D: usize>(nodes: &[(u32, Vector<D>, f64)]) -> Vec<Basis> {
     all
 }
 
-/// The same with parabolas along the surface.
+/// This basis together with parabolas along the surface.
 fn along_surface<const D: usize>(nodes: &[(u32, Vector<D>, f64)], normal: &Vector<D>) -> Vec<Basis> {
     let mut all = rigid(nodes);
     if D == 2 {
-        // γz²
+        // the term γz²
         all.push(field(nodes, |d| {
             Vector::from_fn(|k| if k == 0 { d[0] * d[0] - d[1] * d[1] } else { 2.0 * d[0] * d[1] })
         }));
@@ -267,7 +270,7 @@ fn along_surface<const D: usize>(nodes: &[(u32, Vector<D>, f64)], normal: &Vecto
     all
 }
 
-/// Two unit vectors along a surface in space; in the plane the first of them alone has a meaning.
+/// Two orthonormal vectors tangential to a surface in 3-D; in 2-D only the first one is meaningful.
 pub fn tangents<const D: usize>(normal: &Vector<D>) -> [Vector<D>; 2] {
     if D == 2 {
         return [Vector::from_fn(|d| if d == 0 { -normal[1] } else { normal[0] }), Vector::ZERO];

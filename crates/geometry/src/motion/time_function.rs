@@ -1,62 +1,64 @@
-//! Courses: scalar functions of time of which a law of motion is a sum.
+//! Scalar functions of time, of which a motion is a sum.
 //!
-//! Every course is written once over [`Scalar`]; its velocity and acceleration come from the same lines.
+//! Every function is coded once, generic in [`Scalar`]; velocity and acceleration follow by automatic differentiation.
 use std::f64::consts::TAU;
 
 use super::spline::Spline;
 use crate::case::formula::{Formula, Function, Operation};
 use crate::math::jet::{Jet, Scalar};
 
-/// Relative difference of a formula after a period, below which it repeats: far above rounding, far below any motion.
+/// Relative difference of a formula after one period below which it is periodic: far above round-off and far below any
+/// real motion.
 const REPEATS: f64 = 1e-9;
-/// Number of times at which a formula is compared with itself a period later.
+/// Number of times at which a formula is compared with itself one period later.
 const SAMPLES: usize = 29;
 
-/// Most periods of a part of a motion in the common one: more are of no use to anybody.
+/// Greatest number of periods of one part of a motion in the common period.
 pub const MOST_PERIODS: u32 = 64;
 
 /// A scalar function of time.
 #[derive(Clone, Debug)]
 pub enum TimeFunction {
-    /// amplitude·sin(ωt + phase).
+    /// The sine amplitude·sin(ωt + phase).
     Sine {
         /// Amplitude.
         amplitude: f64,
         /// Angular frequency ω.
         omega: f64,
-        /// Phase, radians.
+        /// Phase [rad].
         phase: f64,
     },
-    /// rate·t.
+    /// The linear function rate·t.
     Steady(f64),
     /// A cubic spline through a table.
     Spline(Spline),
-    /// A formula of a case file in its own time.
+    /// A formula of a case file, in the time of the case.
     Formula {
         /// The formula in t and ω.
         formula: Formula,
-        /// ω of the formula, in the units of its time.
+        /// Angular frequency ω in the formula, in the units of its time.
         omega: f64,
-        /// Units of the formula's time in one unit of time here.
+        /// Length of the solver's unit of time in units of the formula's time.
         time: f64,
     },
-    /// value + rate (t − about) + acceleration (t − about)²/2: a coordinate that is an unknown, as it is at one time.
+    /// The parabola value + rate (t − about) + acceleration (t − about)²/2, which represents an unknown coordinate near
+    /// one time.
     Momentary {
-        /// Time.
+        /// The time `about`.
         about: f64,
-        /// Value, rate and acceleration then.
+        /// Value, rate and acceleration at that time.
         jet: Jet,
     },
 }
 
-/// How a function of time repeats.
+/// Periodicity of a function of time.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Repeat {
-    /// It does not change.
+    /// The function is constant.
     Constant,
-    /// After every period.
+    /// The function is periodic with this period.
     Every(f64),
-    /// Not at all.
+    /// The function is not periodic.
     Never,
 }
 
@@ -78,7 +80,7 @@ impl TimeFunction {
         }
     }
 
-    /// How the course repeats, as a displacement.
+    /// Periodicity of the function as a displacement.
     pub fn repeat(&self) -> Repeat {
         match self {
             Self::Sine { amplitude: 0.0, .. } | Self::Steady(0.0) => Repeat::Constant,
@@ -93,7 +95,7 @@ impl TimeFunction {
         }
     }
 
-    /// Compares the course with itself a period later at times that no harmonic shares.
+    /// Compares the function with itself one period later, at times that no harmonic has in common.
     fn repeats_after(&self, period: f64) -> bool {
         let golden = 0.618_033_988_749_894_9;
         let times = (0..SAMPLES).map(|k| period * (golden * k as f64).fract() * 3.0);
@@ -109,7 +111,7 @@ fn evaluate<S: Scalar>(formula: &Formula, t: S, omega: f64) -> S {
         Formula::Number(x) => S::constant(*x),
         Formula::Time => t,
         Formula::Omega => S::constant(omega),
-        // formulas in time name no place
+        // formulas of time do not contain coordinates
         Formula::Coordinate(_) => S::constant(0.0),
         Formula::Negative(a) => -evaluate(a, t, omega),
         Formula::Call(function, a) => call(*function, evaluate(a, t, omega)),
@@ -141,7 +143,7 @@ fn evaluate<S: Scalar>(formula: &Formula, t: S, omega: f64) -> S {
     }
 }
 
-/// xⁿ for a fixed n; a factor n or n − 1 of zero ends the chain of derivatives.
+/// xⁿ for a constant n; the chain of derivatives ends when a factor n or n − 1 is zero.
 fn power<S: Scalar>(x: S, n: f64) -> S {
     x.map(|x| {
         let term = |factor: f64, m: f64| if factor == 0.0 { 0.0 } else { factor * x.powf(m) };
@@ -191,7 +193,7 @@ fn derivatives(function: Function, x: f64) -> [f64; 3] {
     }
 }
 
-/// The shortest time after which all of `repeats` repeat.
+/// The common periodicity of all functions: the shortest time after which each of them repeats.
 pub(super) fn common(repeats: impl IntoIterator<Item = Repeat>) -> Repeat {
     repeats.into_iter().fold(Repeat::Constant, |a, b| match (a, b) {
         (Repeat::Never, _) | (_, Repeat::Never) => Repeat::Never,
@@ -200,7 +202,7 @@ pub(super) fn common(repeats: impl IntoIterator<Item = Repeat>) -> Repeat {
     })
 }
 
-/// Least common multiple of two periods: n·a = m·b with small whole numbers.
+/// Least common multiple of two periods: n·a = m·b with small integers n and m.
 fn least_multiple(a: f64, b: f64) -> Option<f64> {
     let matches = |n: u32| {
         let m = f64::from(n) * a / b;
@@ -209,12 +211,12 @@ fn least_multiple(a: f64, b: f64) -> Option<f64> {
     (1..=MOST_PERIODS).find(|n| matches(*n)).map(|n| f64::from(n) * a)
 }
 
-/// Value and two derivatives of a sum of courses.
+/// Value of a sum of functions, with derivatives as `S` carries them.
 pub(super) fn total<S: Scalar>(functions: &[TimeFunction], t: S) -> S {
     functions.iter().fold(S::constant(0.0), |sum, function| sum + function.at(t))
 }
 
-/// Value, rate and acceleration of a sum of courses.
+/// Value, rate and acceleration of a sum of functions.
 pub(super) fn total_with_rates(functions: &[TimeFunction], t: f64) -> Jet {
     total(functions, Jet::variable(t))
 }

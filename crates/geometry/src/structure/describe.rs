@@ -1,14 +1,14 @@
-//! What a structure is, in lines for a report: conventions, the numbers of flutter, frequencies in every unit that serves.
+//! Description of a structure for reports: sign conventions, flutter parameters, and frequencies in several units.
 use std::f64::consts::{PI, TAU};
 
 use super::from_case::semichord;
 use super::{BodyFrame, InertiaLaw, Model, Spring, Structure};
 use crate::case::{self, Case, Units};
 
-/// Significant digits of numbers in a report.
+/// Number of significant digits in a report.
 const DIGITS: i32 = 6;
 
-/// `x` with [`DIGITS`] significant digits, without an exponent where it reads well.
+/// `x` with [`DIGITS`] significant digits, without an exponent where this is readable.
 fn number(x: f64) -> String {
     let places = if x == 0.0 { 0 } else { DIGITS - 1 - x.abs().log10().floor() as i32 };
     match places {
@@ -25,11 +25,11 @@ fn point(x: &[f64]) -> String {
     format!("({})", x.iter().map(|c| number(*c)).collect::<Vec<_>>().join(", "))
 }
 
-/// How the lines are written.
+/// Writer of the lines of a description.
 struct Writer<'a, const D: usize> {
     structure: &'a Structure<D>,
     units: Units,
-    /// U∞ in units of the solver.
+    /// Speed U∞ of the stream in units of the solver.
     stream: f64,
     dimensional: bool,
     b: f64,
@@ -37,7 +37,7 @@ struct Writer<'a, const D: usize> {
 }
 
 impl<const D: usize> Structure<D> {
-    /// Lines about the structure that `data` of `case` describes: signs, units, μ, x_α, r_α², V*, frequencies.
+    /// Lines that describe the structure that `data` of `case` defines: signs, units, μ, x_α, r_α², V*, frequencies.
     pub fn description(&self, case: &Case, data: &case::Structure, frame: BodyFrame) -> Vec<String> {
         let (units, stream, b) = (case.flow.units(), case.flow.reference().mach, semichord(data, &frame));
         let dimensional = case.flow.is_dimensional();
@@ -119,7 +119,7 @@ impl<const D: usize> Writer<'_, D> {
         self.speeds();
     }
 
-    /// V* and its kin, where a spring of pitch or plunge leads.
+    /// V* and related parameters, if there is a spring of pitch or plunge.
     fn speeds(&mut self) {
         let Model::Planar(body) = &self.structure.model else { return };
         let find = |name: &str| self.structure.coordinates.iter().find(|c| c.name == name);

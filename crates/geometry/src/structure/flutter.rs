@@ -1,25 +1,31 @@
-//! Flutter of a structure with small motions in a stream whose speed is varied at one Mach number.
+//! Flutter analysis of a structure in a stream whose speed, density or altitude is varied at constant Mach number (p-k
+//! method).
 //!
-//! With x = U/U_ref, the speed over that for which matrices and time hold, motions q e^{λt} are those of
+//! With x = U/U_ref, the speed relative to that of the reference for which matrices and time are given, motions q
+//! e^{λt} satisfy
 //!
 //! D(λ, x) q = [M λ² + C λ + K − x² Q(iκ)] q = 0, κ = Im λ/x,
 //!
-//! the p-k method (Hassig, J. Aircraft 8, 1971): forces are those of the harmonic motion with the same frequency, exact where the motion
-//! neither grows nor decays. κ = 0 is the limit of steady displacements. Where density is varied instead, x is the dynamic pressure
-//! over that of the reference, x² Q becomes x Q, and κ = Im λ/u with the speed u that goes with it ([`Varied`]).
+//! the p-k method (Hassig, J. Aircraft 8, 1971): the aerodynamic forces are those of the harmonic motion with the same
+//! frequency, which is exact for neutral stability. κ = 0 is the limit of steady displacements. Where density is varied
+//! instead, x is the ratio of dynamic pressures, x² Q becomes x Q, and κ = Im λ/u with the speed u that corresponds to
+//! x ([`Varied`]).
 //!
-//! Branches λ(x), one for each natural mode, are followed in the coordinates of the natural modes, ΦᵀMΦ = 1: first at one low speed
-//! while damping and forces are turned on, then along x. Newton's method on D q = 0, q₀ᴴ q = 1 with q₀ the shape before, at frozen κ, is
-//! repeated by the secant method until κ is that of its root. Steps shrink where that fails or shapes turn. Roots that run into
-//! another in a conservative system leave it at right angles, |λ − λ_F| ∝ |x − x_F|^½; every branch turns right there, so that the two
-//! go apart: of two frequencies that meet the lower one, which rises, goes on to grow.
+//! The branches λ(x), one for each natural mode, are followed in modal coordinates, ΦᵀMΦ = 1: first at one low speed
+//! while damping and aerodynamic forces are increased from zero, then along x. Newton's method for D q = 0, q₀ᴴ q = 1,
+//! where q₀ is the previous shape, at fixed κ is embedded in a secant iteration for κ. The step is reduced where this
+//! fails or where shapes change too much. In a conservative system, two roots that coalesce separate at right angles,
+//! |λ − λ_F| ∝ |x − x_F|^½. Every branch turns right at this point, so that the two are distinguished: of two
+//! coalescing frequencies, the lower one, which rises, becomes the unstable branch.
 //!
-//! A mode without stiffness begins with one that is turned off as forces are turned on: the stream may hold it.
+//! A mode without stiffness starts with an artificial stiffness that is removed as the forces are increased, because
+//! the stream may provide stiffness.
 //!
-//! What grows from the start has its crossing at x = 0 where density is varied ([`Flutter::grows_from`]).
+//! Where density is varied, a motion that is unstable from the start has its flutter point at x = 0
+//! ([`Flutter::grows_from`]).
 //!
-//! Limits: a branch ends where its frequency reaches zero, and where forces leave it without a root. What does not oscillate is found
-//! apart ([`StillMotions`]), divergence among it.
+//! Limits: a branch ends where its frequency reaches zero, and where no root is found. Non-oscillatory motions, among
+//! them divergence, are treated separately ([`StillMotions`]).
 pub use still::StillMotions;
 pub use varied::Varied;
 
@@ -36,119 +42,122 @@ use super::Matrices;
 use crate::math::singular::Singular;
 use crate::math::symmetric;
 
-/// First speed over the last.
+/// First speed of a branch divided by the last.
 const FIRST: f64 = 1e-3;
-/// Steps of a branch, at least.
+/// Minimum number of steps of a branch.
 const STEPS: f64 = 200.0;
-/// Steps in which forces are turned on, at least.
+/// Minimum number of steps in which the forces are increased from zero.
 const TURNED_ON: f64 = 4.0;
-/// Step, over the speed, that is not halved: there branches turn or end.
+/// Relative step below which no further reduction is tried: branches turn or end there.
 const SMALLEST: f64 = 1e-7;
-/// Cosine squared of the angle between shapes before and after a step, at least.
+/// Smallest squared cosine of the angle between the shapes before and after a step.
 const SAME_SHAPE: f64 = 0.9;
-/// Change of a root in a step, over its size, at most.
+/// Greatest relative change of a root in a step.
 const SAME_ROOT: f64 = 0.2;
-/// Guesses beside a root where branches turn, over its size.
+/// Relative distances of the initial guesses from a root where branches turn.
 const BESIDE: [f64; 3] = [1e-3, 1e-2, 1e-4];
-/// Newton steps, at most: round-off is reached in five unless roots are close.
+/// Greatest number of Newton steps; five reach round-off unless roots are close.
 const NEWTON: usize = 40;
-/// Change of root and shape that ends them, and that which may go on to tremble.
+/// Change of root and shape at which the Newton iteration ends, and the change that is acceptable when it stagnates.
 const CONVERGED: [f64; 2] = [1e-14, 1e-8];
-/// Secant steps for κ, at most.
+/// Greatest number of secant steps for κ.
 const SECANT: usize = 60;
-/// Change of the frequency, over the root, that ends them, and that which may go on to tremble.
+/// Relative change of the frequency at which the secant iteration ends, and the change that is acceptable when it
+/// stagnates.
 const MATCHED: [f64; 2] = [1e-12, 1e-10];
-/// Rate of growth over the root below which a motion counts as neutral: far above round-off.
+/// Ratio of growth rate and root below which a motion is neutral; far above round-off.
 const NEUTRAL: f64 = 1e-9;
-/// Width of the interval of a crossing, over the speed, and rate of growth over the root there: round-off.
+/// Relative width of the interval of a flutter point, and relative growth rate there, at which its location ends.
 const LOCATED: [f64; 2] = [1e-13, 1e-15];
-/// Imaginary over real part of an eigenvalue that counts as real.
+/// Ratio of imaginary and real part below which an eigenvalue counts as real.
 const REAL: f64 = 1e-8;
-/// Natural frequencies, squared, that are closer than the first are set apart by the second until forces do.
+/// Squared natural frequencies with a relative distance below the first value are separated by the second value until
+/// forces act.
 const CLOSE: [f64; 2] = [1e-3, 1e-2];
-/// Square of a frequency, over the largest, that is what round-off leaves of a mode without stiffness.
+/// Squared frequency relative to the largest, below which a mode has no stiffness except round-off.
 const RIGID: f64 = 1e-13;
 const ZERO: Complex64 = Complex64::new(0.0, 0.0);
 
-/// A structure and the forces of a stream on it.
+/// A structure and the aerodynamic forces on it.
 pub struct Flutter<'a> {
     forces: &'a (dyn Fn(f64) -> Vec<Complex64> + 'a),
     modes: Option<Modes>,
     varied: Varied<'a>,
 }
 
-/// A motion on a branch.
+/// A point of a branch.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Point {
-    /// x: U/U_ref unless something else is varied.
+    /// Varied quantity x; U/U_ref unless another quantity is varied.
     pub x: f64,
-    /// U/U_ref.
+    /// Speed ratio U/U_ref.
     pub speed: f64,
-    /// λ: rate of growth and angular frequency.
+    /// Root λ: growth rate (real part) and angular frequency (imaginary part), in the time of the reference.
     pub lambda: Complex64,
-    /// Amplitudes of the coordinates; generalised mass 1, phases those of the point before.
+    /// Complex amplitudes of the coordinates, with generalised mass 1; phases are continuous along the branch.
     pub shape: Vec<Complex64>,
 }
 
-/// What begins at a speed.
+/// Kind of a stability boundary.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kind {
-    /// An oscillation begins to grow.
+    /// Flutter: an oscillation becomes unstable.
     Flutter,
-    /// One that grew begins to decay.
+    /// Restabilisation: an unstable oscillation becomes stable again.
     Restabilised,
-    /// A steady displacement is in balance whatever its size.
+    /// Divergence: a steady displacement of any magnitude is in equilibrium.
     Divergence,
 }
 
-/// Where a motion belongs.
+/// Branch to which a motion belongs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Branch {
-    /// The branch of a natural mode, by rising frequency from 0.
+    /// Branch of a natural mode; modes are numbered from 0 by ascending frequency.
     Mode(usize),
-    /// A motion that grows without oscillating, by rising speed at which it begins from 0.
+    /// A non-oscillatory growing motion; these are numbered from 0 by ascending speed of onset.
     Divergence(usize),
 }
 
-/// A speed at which a motion neither grows nor decays.
+/// A point of neutral stability.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Crossing {
-    /// What begins.
+    /// Kind of the stability boundary.
     pub kind: Kind,
-    /// Where it belongs.
+    /// Branch to which it belongs.
     pub branch: Branch,
-    /// Natural mode, by rising frequency, whose branch crosses; at divergence that which has most of the displacement.
+    /// Natural mode (by ascending frequency) whose branch crosses; for divergence, the mode with the largest part of
+    /// the displacement.
     pub mode: usize,
-    /// x: U/U_ref unless something else is varied.
+    /// Varied quantity x; U/U_ref unless another quantity is varied.
     pub x: f64,
-    /// U/U_ref.
+    /// Speed ratio U/U_ref.
     pub speed: f64,
-    /// Dynamic pressure over that of the reference.
+    /// Dynamic pressure divided by that of the reference.
     pub pressure: f64,
-    /// Im λ, in the time of the reference.
+    /// Angular frequency Im λ in the time of the reference.
     pub frequency: f64,
-    /// Im λ/(U/U_ref).
+    /// Frequency κ = Im λ/(U/U_ref) of the aerodynamic forces.
     pub kappa: f64,
-    /// Amplitudes of the coordinates; generalised mass 1.
+    /// Complex amplitudes of the coordinates, with generalised mass 1.
     pub shape: Vec<Complex64>,
 }
 
-/// Matrices in coordinates of the natural modes, whose mass matrix is 1; rows one after another.
+/// Matrices in modal coordinates, in which the mass matrix is the identity; row by row.
 #[derive(Clone)]
 struct Modes {
     n: usize,
-    /// Squares of the frequencies, rising.
+    /// Squared natural frequencies, ascending.
     squares: Vec<f64>,
-    /// Φ, and Φ⁻¹ = ΦᵀM.
+    /// Modal matrix Φ, and Φ⁻¹ = ΦᵀM.
     basis: Vec<f64>,
     inverse: Vec<f64>,
     damping: Vec<Complex64>,
     stiffness: Vec<Complex64>,
-    /// What sets apart squares that are close.
+    /// Artificial separation of close squared frequencies.
     apart: Vec<f64>,
 }
 
-/// Speed, and share of damping and forces that are turned on.
+/// Varied quantity, and fraction of damping and forces that acts.
 #[derive(Clone, Copy)]
 struct Place {
     x: f64,
@@ -159,47 +168,48 @@ struct Place {
 struct Root {
     place: Place,
     lambda: Complex64,
-    /// In modes, of length 1.
+    /// Shape in modal coordinates, of length 1.
     shape: Vec<Complex64>,
-    /// dλ/dx along the branch.
+    /// Derivative dλ/dx along the branch.
     rate: Complex64,
 }
 
 impl<'a> Flutter<'a> {
-    /// With the forces Q(iκ) of displacements that `forces` gives for κ ≥ 0, rows one after another, at the speed U_ref.
+    /// Flutter analysis with the aerodynamic forces Q(iκ) per unit displacement at the speed U_ref, which `forces`
+    /// returns for κ ≥ 0, row by row.
     pub fn new(matrices: &Matrices, forces: &'a (dyn Fn(f64) -> Vec<Complex64> + 'a)) -> Self {
         Self { forces, modes: Modes::new(matrices), varied: Varied::Speed }
     }
 
-    /// The same with something else varied than the speed.
+    /// The analysis with another varied quantity than the speed.
     pub fn varying(self, varied: Varied<'a>) -> Self {
         Self { varied, ..self }
     }
 
-    /// U/U_ref at x.
+    /// Speed ratio U/U_ref at x.
     fn speed(&self, x: f64) -> f64 {
         self.varied.speed(x)
     }
 
-    /// Dynamic pressure over that of the reference at x.
+    /// Dynamic pressure at x divided by that of the reference.
     fn pressure(&self, x: f64) -> f64 {
         self.varied.pressure(x)
     }
 
-    /// x where the dynamic pressure over that of the reference is `pressure`.
+    /// x at which the dynamic pressure ratio is `pressure`.
     fn place(&self, pressure: f64) -> f64 {
         self.varied.place(pressure)
     }
 
-    /// Branches of all natural modes, by rising frequency, from little speed to `upto`; empty for a mode that cannot be followed, none
-    /// at all when the mass matrix is not positive definite.
+    /// Branches of all natural modes in ascending order of frequency, from a low speed to `upto`. A branch that cannot
+    /// be followed is empty; there are no branches when the mass matrix is not positive definite.
     pub fn branches(&self, upto: f64) -> Vec<Vec<Point>> {
         let (Some(modes), true) = (&self.modes, 0.0 < upto && upto.is_finite()) else { return Vec::new() };
         let Some(modes) = self.held(modes, upto) else { return vec![Vec::new(); modes.n] };
         (0..modes.n).map(|m| self.branch(&modes, m, upto)).collect()
     }
 
-    /// The same modes, those without stiffness set apart by what forces do at the lowest speed.
+    /// The modes, with those without stiffness separated by the effect of the forces at the lowest speed.
     fn held(&self, modes: &Modes, upto: f64) -> Option<Modes> {
         let (mut held, rigid) = (modes.clone(), modes.rigid());
         if rigid.is_empty() {
@@ -226,7 +236,8 @@ impl<'a> Flutter<'a> {
         roots.into_iter().chain(std::iter::once(start)).chain(path).map(point).collect()
     }
 
-    /// The root of natural mode `m` at the low value `x` of what is varied, where damping and forces are turned on.
+    /// The root of natural mode `m` at the low value `x` of the varied quantity, where damping and forces are increased
+    /// from zero.
     fn begin(&self, modes: &Modes, m: usize, x: f64) -> Option<Root> {
         let square = modes.squares[m] + modes.apart[m];
         if !(square > 0.0) {
@@ -239,8 +250,8 @@ impl<'a> Flutter<'a> {
         path.pop().filter(|_| arrived).map(|root| Root { rate: ZERO, ..root })
     }
 
-    /// Where motions on `branches` begin or end to grow, and where there is divergence below `upto`; by rising speed. A motion that grows
-    /// from the start has its crossing at zero where the density is varied, and none where the speed is.
+    /// Stability boundaries of the `branches`, and divergence below `upto`, in ascending order of speed. A motion that
+    /// is unstable from the start has its boundary at zero when density is varied, and none when speed is varied.
     pub fn crossings(&self, branches: &[Vec<Point>], upto: f64) -> Vec<Crossing> {
         let Some(modes) = &self.modes else { return Vec::new() };
         let mut found = self.divergence(modes, upto);
@@ -260,13 +271,13 @@ impl<'a> Flutter<'a> {
         found
     }
 
-    /// Q(iκ) in modes; `None` when it is not finite.
+    /// Forces Q(iκ) in modal coordinates; `None` when they are not finite.
     fn modal(&self, modes: &Modes, kappa: f64) -> Option<Vec<Complex64>> {
         let forces = (self.forces)(kappa);
         (forces.len() == modes.n * modes.n && forces.iter().all(|f| f.is_finite())).then(|| modes.project(&forces))
     }
 
-    /// The root on a branch where its rate of growth changes sign.
+    /// The root on a branch where its growth rate changes sign.
     fn locate(&self, modes: &Modes, branch: &[Point], bracket: &Bracket) -> Option<Root> {
         let [mut low, mut high] = [modes.root(branch, bracket.low)?, modes.root(branch, bracket.high)?];
         let mut size = [growth(low.lambda), growth(high.lambda)];
@@ -286,7 +297,7 @@ impl<'a> Flutter<'a> {
                 return Some(root);
             }
             let below = (rate > if bracket.simple { 0.0 } else { NEUTRAL }) == before;
-            // the end that stays twice weighs half (Illinois)
+            // the value at an end that is retained twice is halved (Illinois method)
             let kept = usize::from(below);
             if last == Some(below) {
                 size[kept] *= 0.5;
@@ -295,11 +306,12 @@ impl<'a> Flutter<'a> {
             last = Some(below);
             *(if below { &mut low } else { &mut high }) = root;
         }
-        // where roots run into another the frequency is smooth on the side of growth
+        // where roots coalesce, the frequency is smooth on the unstable side
         Some(if before { low } else { high })
     }
 
-    /// Roots along the line from that of `from` to the place `to`, and whether they get there, in steps of at most `longest`.
+    /// Roots along the line from `from` to the place `to`, and whether the end is reached, in steps of at most
+    /// `longest`.
     fn follow(&self, modes: &Modes, from: Root, to: Place, longest: f64) -> (Vec<Root>, bool) {
         let moves = [to.x - from.place.x, to.on - from.place.on];
         let length = moves[0] + moves[1];
@@ -333,7 +345,8 @@ impl<'a> Flutter<'a> {
         (path, true)
     }
 
-    /// The root at `place`, at a distance `size`, near `guess`; `None` when there is none or it belongs to another branch.
+    /// The root at `place`, at the distance `size`, near `guess`; `None` when there is none or it belongs to another
+    /// branch.
     fn step(&self, modes: &Modes, from: &Root, place: Place, size: f64, guess: Complex64) -> Option<Root> {
         let (lambda, shape) = self.root(modes, place, guess, &from.shape)?;
         let turned = inner(&from.shape, &shape).norm_sqr();
@@ -342,7 +355,7 @@ impl<'a> Flutter<'a> {
         same.then(|| Root { place, lambda, shape, rate: change / size })
     }
 
-    /// The root beyond a point where two meet: to the right of the direction in which they came.
+    /// The root beyond a point at which two roots coalesce: to the right of the direction of approach.
     fn turn(&self, modes: &Modes, from: &Root, place: Place, size: f64) -> Option<Root> {
         let speed = from.rate.norm();
         if !(speed > 0.0) {
@@ -357,7 +370,7 @@ impl<'a> Flutter<'a> {
         BESIDE.into_iter().find_map(beside)
     }
 
-    /// Root and shape at `place` near a guess, with the forces of its own frequency.
+    /// Root and shape at `place` near a guess, with aerodynamic forces at the frequency of the root.
     fn root(
         &self,
         modes: &Modes,
@@ -370,7 +383,7 @@ impl<'a> Flutter<'a> {
         let mut kappa = lambda.im / speed;
         let (mut before, mut last) = (None::<[f64; 2]>, f64::INFINITY);
         for _ in 0..SECANT {
-            // no frequency, no root
+            // without oscillation there is no root of this kind
             if !(kappa > 0.0) {
                 return None;
             }
@@ -400,14 +413,14 @@ impl Modes {
             return None;
         }
         let inverse = inverse_factor(&symmetric::cholesky(&matrices.mass, n)?, n);
-        // G⁻¹ K G⁻ᵀ of the symmetric part
+        // G⁻¹ K G⁻ᵀ of the symmetric part of K
         let k = |i: usize, j: usize| 0.5 * (matrices.stiffness[i * n + j] + matrices.stiffness[j * n + i]);
         let half: Vec<f64> = (0..n * n).map(|e| (0..n).map(|l| inverse[e / n * n + l] * k(l, e % n)).sum()).collect();
         let entry = |i: usize, j: usize| (0..n).map(|l| half[i * n + l] * inverse[j * n + l]).sum::<f64>();
         let columns: Vec<Vec<f64>> =
             (0..n).map(|j| (0..n).map(|i| 0.5 * (entry(i, j) + entry(j, i))).collect()).collect();
         let found = Singular::of(columns);
-        // A v = λ v, so that the left vectors are the right ones times λ
+        // A v = λ v, so that the left vectors are the right ones multiplied by λ
         let quotient = |(left, right): (&Vec<f64>, &Vec<f64>)| left.iter().zip(right).map(|(l, r)| l * r).sum::<f64>();
         let mut order: Vec<(f64, &Vec<f64>)> =
             found.left.iter().zip(&found.right).map(|pair| (quotient(pair), pair.1)).collect();
@@ -427,7 +440,7 @@ impl Modes {
         Some(modes)
     }
 
-    /// Φᵀ A Φ.
+    /// The modal matrix Φᵀ A Φ.
     fn project(&self, a: &[Complex64]) -> Vec<Complex64> {
         let n = self.n;
         let half = |e: usize| (0..n).map(|l| a[e / n * n + l] * self.basis[l * n + e % n]).sum::<Complex64>();
@@ -435,12 +448,12 @@ impl Modes {
         (0..n * n).map(|e| (0..n).map(|l| half[l * n + e % n] * self.basis[l * n + e / n]).sum()).collect()
     }
 
-    /// Φ q.
+    /// Coordinates Φ q of a modal shape.
     fn coordinates(&self, shape: &[Complex64]) -> Vec<Complex64> {
         self.basis.chunks_exact(self.n).map(|row| row.iter().zip(shape).map(|(b, q)| q * *b).sum()).collect()
     }
 
-    /// Point `k` of a branch as a root; its rate by the difference to the point before.
+    /// Point `k` of a branch as a root; its derivative is the difference quotient to the previous point.
     fn root(&self, branch: &[Point], k: usize) -> Option<Root> {
         let point = branch.get(k).filter(|point| point.shape.len() == self.n)?;
         let modal: Vec<Complex64> = self
@@ -455,7 +468,7 @@ impl Modes {
         Some(Root { place: Place { x: point.x, on: 1.0 }, lambda: point.lambda, shape, rate })
     }
 
-    /// Root and shape of λ² + `on` C λ + A, from a guess; the shape has the product 1 with `near`.
+    /// Root and shape of λ² + `on` C λ + A by Newton's method from a guess; the shape has the product 1 with `near`.
     fn newton(
         &self,
         a: &[Complex64],
@@ -494,12 +507,12 @@ impl Modes {
     }
 }
 
-/// Points of a branch between which its rate of growth changes sign.
+/// Two points of a branch between which its growth rate changes sign.
 struct Bracket {
     kind: Kind,
     low: usize,
     high: usize,
-    /// Decay on one side, growth on the other; else the motion is neutral over some length.
+    /// True for decay on one side and growth on the other; otherwise the motion is neutral over an interval.
     simple: bool,
 }
 
@@ -509,7 +522,7 @@ fn brackets(branch: &[Point]) -> Vec<Bracket> {
     let mut found = Vec::new();
     for k in (1..rates.len()).filter(|k| grows(k - 1) != grows(*k)) {
         let kind = if grows(k) { Kind::Flutter } else { Kind::Restabilised };
-        // beyond neutral points there may be decay
+        // neutral points may be followed by decay
         let sure = match kind {
             Kind::Flutter => (0..k).rev().find(|j| grows(*j) || decays(*j)),
             _ => (k..rates.len()).find(|j| grows(*j) || decays(*j)),
@@ -524,7 +537,7 @@ fn brackets(branch: &[Point]) -> Vec<Bracket> {
     found
 }
 
-/// Re λ/|λ|.
+/// Relative growth rate Re λ/|λ|.
 fn growth(lambda: Complex64) -> f64 {
     lambda.re / lambda.norm()
 }
@@ -533,17 +546,17 @@ fn inner(a: &[Complex64], b: &[Complex64]) -> Complex64 {
     a.iter().zip(b).map(|(a, b)| a.conj() * b).sum()
 }
 
-/// Place of the smallest value; zero when there are none.
+/// Index of the smallest value; zero when there are no values.
 fn least(values: impl Iterator<Item = f64>) -> usize {
     values.enumerate().min_by(|a, b| a.1.total_cmp(&b.1)).map_or(0, |found| found.0)
 }
 
-/// The mode with the largest share.
+/// Index of the mode with the largest share.
 fn largest_share(shape: &[Complex64]) -> usize {
     least(shape.iter().map(|q| -q.norm()))
 }
 
-/// G⁻¹ of the lower triangle G.
+/// Inverse G⁻¹ of the lower triangular matrix G.
 fn inverse_factor(factor: &[f64], n: usize) -> Vec<f64> {
     let mut x = vec![0.0; n * n];
     for i in 0..n {
@@ -555,7 +568,7 @@ fn inverse_factor(factor: &[f64], n: usize) -> Vec<f64> {
     x
 }
 
-/// What to add to squares of frequencies that are close so that they are not.
+/// Values to be added to close squared frequencies in order to separate them.
 fn set_apart(squares: &[f64]) -> Vec<f64> {
     let mut last = f64::NEG_INFINITY;
     let apart = squares.iter().map(|square| {
@@ -609,7 +622,7 @@ mod tests {
         found.iter().map(|c| c.kind).collect()
     }
 
-    /// |D q| over the size of its terms.
+    /// |D q| divided by the magnitude of its terms.
     fn residual(
         m: &Matrices,
         forces: &dyn Fn(f64) -> Vec<Complex64>,

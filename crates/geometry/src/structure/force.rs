@@ -1,30 +1,30 @@
-//! External forces that are functions of time.
+//! Prescribed forces as functions of time.
 use crate::case::formula::Formula;
 
-/// A generalised force that time alone determines.
+/// A generalised force that depends on time only.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub enum ForceHistory {
-    /// None.
+    /// No force.
     #[default]
     Zero,
-    /// amplitude·cos(ωt + phase).
+    /// The force amplitude·cos(ωt + phase).
     Cosine {
         /// Amplitude.
         amplitude: f64,
         /// Angular frequency ω; zero: a steady force.
         omega: f64,
-        /// Phase, radians.
+        /// Phase [rad].
         phase: f64,
     },
-    /// A formula of a case file in its own units.
+    /// A formula of a case file, in the units of the case.
     Formula {
         /// The formula in t and ω.
         formula: Formula,
-        /// ω of the formula, in the units of its time.
+        /// Angular frequency ω in the formula, in the units of its time.
         omega: f64,
-        /// Units of the formula's time in one unit of time here.
+        /// Length of the solver's unit of time in units of the formula's time.
         time: f64,
-        /// Factor on its values.
+        /// Factor on the values of the formula.
         factor: f64,
     },
 }

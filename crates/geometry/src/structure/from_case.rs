@@ -1,10 +1,10 @@
-//! Structures from the numbers of a case.
+//! Structures from the values of a case.
 //!
-//! The solver's units are density ρ∞ and sound speed a∞ of the free stream and the unit of length of the case: with a dimensional free
-//! stream masses and inertias are divided by ρ∞, stiffnesses, moments and forces by ρ∞ a∞², dampers by ρ∞ a∞, rates and frequencies by a∞,
-//! accelerations by a∞², and time is multiplied by a∞. Without one all these factors are 1. With the semichord b the numbers of flutter
-//! are m = μ π b², S = m b x_α, I = m b² r_α², ω_α = U∞/(b V*), V* = V_f √μ, U* = π V*; ω is that of pitch where it is free, else that
-//! of plunge.
+//! The units of the solver are the density ρ∞ and the sound speed a∞ of the free stream and the unit of length of the
+//! case. With a dimensional free stream, masses and inertias are divided by ρ∞; stiffnesses, moments and forces by ρ∞
+//! a∞²; dampers by ρ∞ a∞; rates and frequencies by a∞; accelerations by a∞²; and time is multiplied by a∞. Otherwise
+//! all these factors are 1. With the semichord b, the flutter parameters are m = μ π b², S = m b x_α, I = m b² r_α²,
+//! ω_α = U∞/(b V*), V* = V_f √μ, U* = π V*; ω is that of pitch where pitch is an unknown, otherwise that of plunge.
 use std::f64::consts::PI;
 
 use super::{
@@ -14,28 +14,29 @@ use super::{
 use crate::case::formula::Formula;
 use crate::case::{self, Case, Freedom, Length, SpringShape, StructureModel, Units};
 
-/// What the numbers of flutter are measured with.
+/// Reference dimensions for the flutter parameters.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BodyFrame {
-    /// Reference chord; half of it is the semichord unless the case says otherwise.
+    /// Reference chord; half of it is the default semichord.
     pub chord: f64,
-    /// Middle of the chord of the body as placed: the middle of its bounding box.
+    /// Middle of the chord of the body in its initial placement: the centre of its bounding box.
     pub middle: [f64; 3],
 }
 
-/// One structure of a case on its way.
+/// Data for the construction of one structure.
 struct Builder<'a> {
     case: &'a Case,
     data: &'a case::Structure,
     frame: BodyFrame,
     units: Units,
-    /// U∞ in units of the solver: the Mach number.
+    /// Speed U∞ of the stream in units of the solver, which is the Mach number.
     stream: f64,
     b: f64,
 }
 
 impl<const D: usize> Structure<D> {
-    /// The structure that `data` of `case` describes, for a body with this frame.
+    /// The structure that `data` of `case` defines, for a body with the reference dimensions `frame`. Fails when the
+    /// values do not define one.
     pub fn of_case(case: &Case, data: &case::Structure, frame: BodyFrame) -> Result<Self, StructureError> {
         let b = semichord(data, &frame);
         let (units, stream) = (case.flow.units(), case.flow.reference().mach);
@@ -49,7 +50,7 @@ impl<const D: usize> Structure<D> {
     }
 }
 
-/// b of the numbers of flutter.
+/// Semichord b of the flutter parameters.
 pub(super) fn semichord(data: &case::Structure, frame: &BodyFrame) -> f64 {
     data.semichord.map_or(0.5 * frame.chord, |b| b.0)
 }
@@ -59,7 +60,7 @@ fn point<const N: usize>(list: &[Length]) -> [f64; N] {
 }
 
 impl Builder<'_> {
-    /// Mass, zero where none was needed.
+    /// Mass; zero where none is required.
     fn mass(&self) -> f64 {
         let given = self.data.mass.map(|m| m.0 / self.units.density);
         given.or(self.data.mass_ratio.map(|mu| mu * PI * self.b * self.b)).unwrap_or(0.0)
@@ -70,7 +71,7 @@ impl Builder<'_> {
         std::array::from_fn(|d| list.get(d).map_or(0.0, |g| g.0 / self.units.speed.powi(2)))
     }
 
-    /// Pivot and centre of mass; each stands for the other where only one is given.
+    /// Pivot and centre of mass; when only one is given, both coincide.
     fn points<const N: usize>(&self) -> [[f64; N]; 2] {
         let centre = self.data.centre_of_mass.as_deref().map(point);
         let axis = self
@@ -136,7 +137,7 @@ impl Builder<'_> {
         Structure::new(Model::Spatial(body), coordinates)
     }
 
-    /// The unknowns of a rigid body; `weight` is the mass or inertia of each.
+    /// Unknown coordinates of a rigid body; `weight` is the mass or inertia of each.
     fn coordinates(&self, dimension: usize, weight: impl Fn(Freedom) -> f64) -> Vec<Coordinate> {
         let free = self.data.freedoms(dimension);
         let unknown = |f: &Freedom| {
@@ -175,7 +176,7 @@ impl Builder<'_> {
         omega.map_or(0.0, |omega| weight(f) * omega * omega)
     }
 
-    /// V*.
+    /// Reduced speed V*.
     fn reduced_speed(&self) -> Option<f64> {
         let mass_ratio = self.mass() / (PI * self.b * self.b);
         let by_index = self.data.speed_index.map(|v| v * mass_ratio.sqrt());
@@ -183,14 +184,14 @@ impl Builder<'_> {
     }
 
     fn force(&self, text: Option<&String>) -> ForceHistory {
-        // the reader of the case has read the formula already
+        // the reader of the case has verified the formula
         let Some(Ok(formula)) = text.map(|text| Formula::parse(text)) else { return ForceHistory::Zero };
         let frequency = self.data.force.as_ref().and_then(|f| f.angular_frequency(&self.case.flow, self.frame.chord));
         let (omega, factor) = (frequency.unwrap_or(0.0), 1.0 / self.units.pressure());
         ForceHistory::Formula { formula, omega, time: self.units.case_time(1.0), factor }
     }
 
-    /// Plunge and pitch where they are named, then the modes.
+    /// Plunge and pitch where they are unknowns, followed by the modes.
     fn floating<const D: usize>(&self) -> Result<Structure<D>, StructureError> {
         let pivot = self.data.pivot.as_deref().map_or([0.0; 3], point);
         let modes = || self.data.modes.iter().map(|mode| mode.name.clone());
@@ -222,7 +223,7 @@ impl Builder<'_> {
     }
 }
 
-/// K (e + cubic e³).
+/// The spring with the force K (e + cubic e³).
 fn spring(stiffness: f64, shape: Option<&SpringShape>) -> Spring {
     let SpringShape { cubic, free_play, rest } = shape.copied().unwrap_or_default();
     Spring { stiffness, cubic: cubic * stiffness, play: free_play, rest }

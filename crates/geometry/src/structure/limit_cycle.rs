@@ -1,83 +1,86 @@
-//! Limit cycles: periodic motions of given size, with their speed and frequency as unknowns.
+//! Limit cycles: periodic motions of given amplitude, with speed and frequency as unknowns.
 //!
-//! With q(t) = q₀ + Re Σ q̂_n e^{inωt} a structure with springs s_j(q_j) in a stream of u times the speed and p times the dynamic pressure
-//! of the reference obeys, harmonic by harmonic,
+//! With q(t) = q₀ + Re Σ q̂_n e^{inωt}, a structure with springs s_j(q_j) in a stream of u times the reference speed
+//! and p times the reference dynamic pressure satisfies, harmonic by harmonic,
 //!
 //! (−n²ω²M + inωC + K) q̂_n + f̂_n − p (Q(inκ) q̂_n + δ̂_n) = 0, κ = ω/u,
 //!
-//! where f = s(q) − s(0) − s'(0) q is what springs do beyond the stiffness K, and δ what the gas does beyond the forces Q of small motions.
-//! u and p go with what is varied ([`Varied`]): u = x and p = x² at constant density. A
-//! structure that bears the forces F₀ of the gas at rest at p₀ has (p − p₀) F₀ on the right of the means as well. The
-//! harmonics of f are those of its values at many instants of a period (Cameron and Griffin 1989, doi:10.1115/1.3176036), so that none is
-//! taken for another. Amplitude and phase of one coordinate are given, ω and x follow: where x falls while the amplitude rises a branch
-//! is traced around its fold as well. Newton's method with central differences solves.
+//! where f = s(q) − s(0) − s'(0) q is the nonlinear part of the spring forces and δ the nonlinear part of the
+//! aerodynamic forces. u and p depend on the varied quantity x ([`Varied`]): u = x and p = x² at constant density. For
+//! a structure in equilibrium with the steady forces F₀ at p₀, the equations for the means contain (p − p₀) F₀ on the
+//! right-hand side as well. The harmonics of f are computed from its values at many instants of a period (alternating
+//! frequency-time method: Cameron and Griffin 1989, doi:10.1115/1.3176036), so that aliasing is avoided. Amplitude and
+//! phase of one coordinate are given, and ω and x are unknowns; a branch can therefore be followed around a fold, where
+//! x decreases while the amplitude increases. The equations are solved by Newton's method with central differences.
 //!
-//! A motion of given amplitude begins from the flutter of the structure whose spring has the stiffness f̂₁/q̂₁ that a sine sees (the
-//! describing function).
+//! The initial guess for a given amplitude is the flutter point of the structure with the equivalent stiffness f̂₁/q̂₁
+//! of the spring for a sinusoidal motion (describing function).
 use num_complex::Complex64;
 
 use super::flutter::{Crossing, Flutter, Kind, Varied};
 use super::{Matrices, Spring};
 use crate::math::dense::Factors;
 
-/// Instants at which springs are looked at, over the harmonics, and at least.
+/// Number of instants at which springs are evaluated: per harmonic, and the minimum.
 const INSTANTS: [usize; 2] = [32, 256];
-/// Newton steps, at most.
+/// Greatest number of Newton steps.
 const NEWTON: usize = 60;
-/// Residual over the largest term that ends them, and that which may go on to tremble.
+/// Residual relative to the largest term at which the iteration ends, and the residual that is acceptable when it
+/// stagnates.
 const CONVERGED: [f64; 2] = [1e-12, 1e-8];
-/// Change of an unknown over its size in differences.
+/// Relative step of the finite differences.
 const CHANGE: f64 = 1e-6;
-/// Parts of a Newton step that are tried.
+/// Fractions of a Newton step that are tried.
 const SHORTER: [f64; 6] = [1.0, 0.5, 0.25, 0.1, 0.03, 0.01];
-/// Part of a mode's shape below which it does not move the coordinate.
+/// Fraction of a mode shape below which the coordinate does not participate in the mode.
 const MOVES: f64 = 1e-9;
 const ZERO: Complex64 = Complex64::new(0.0, 0.0);
 
-/// A periodic motion q(t) = mean + Re Σ harmonics e^{inωt} of all coordinates, or the forces in one.
+/// A periodic motion q(t) = mean + Re Σ harmonics e^{inωt} of all coordinates, or the periodic forces on them.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Periodic {
     /// Mean of each coordinate.
     pub mean: Vec<f64>,
-    /// Amplitudes: of harmonic n + 1 and coordinate j in `harmonics[n][j]`.
+    /// Complex amplitudes: `harmonics[n][j]` is harmonic n + 1 of coordinate j.
     pub harmonics: Vec<Vec<Complex64>>,
 }
 
 /// A limit cycle.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Cycle {
-    /// x: U/U_ref unless something else is varied.
+    /// Varied quantity x; U/U_ref unless another quantity is varied.
     pub x: f64,
-    /// U/U_ref.
+    /// Speed ratio U/U_ref.
     pub speed: f64,
     /// Angular frequency in the time of the reference.
     pub omega: f64,
-    /// The motion.
+    /// Periodic motion of all coordinates.
     pub motion: Periodic,
 }
 
-/// What moves.
+/// A structure with nonlinear springs in a stream.
 pub struct Oscillator<'a> {
-    /// Matrices about rest.
+    /// Matrices of small motions about rest.
     pub matrices: &'a Matrices,
-    /// The spring of each coordinate.
+    /// Spring of each coordinate.
     pub springs: &'a [Spring],
-    /// Forces of small motions per coordinate at κ, rows one after another.
+    /// Linear aerodynamic forces Q at the reduced frequency κ, row by row.
     pub forces: &'a (dyn Fn(f64) -> Vec<Complex64> + 'a),
-    /// What x is.
+    /// The varied quantity.
     pub varied: Varied<'a>,
-    /// The coordinate whose amplitude is given.
+    /// Index of the coordinate whose amplitude is given.
     pub coordinate: usize,
-    /// What the gas does at rest, where the structure bears it; else bodies are in equilibrium as drawn, at any speed.
+    /// Steady aerodynamic forces in equilibrium with the structure; `None`: the initial placement is an equilibrium at
+    /// any speed.
     pub borne: Option<&'a Borne>,
 }
 
-/// Forces of the gas on a structure in equilibrium with it, which motions are about.
+/// Steady aerodynamic forces in the static equilibrium about which the structure moves.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Borne {
-    /// Per coordinate.
+    /// Generalised force on each coordinate.
     pub forces: Vec<f64>,
-    /// Dynamic pressure at that equilibrium over that of the reference.
+    /// Dynamic pressure of this equilibrium relative to that of the reference.
     pub pressure: f64,
 }
 
@@ -88,7 +91,7 @@ impl Periodic {
         self.mean[j] + self.harmonics.iter().enumerate().map(term).sum::<f64>()
     }
 
-    /// The mean and the first `harmonics` harmonics of values at as many equal parts of a period as there are.
+    /// Mean and first `harmonics` harmonics of values at equidistant instants of a period.
     pub fn of_values(values: &[Vec<f64>], harmonics: usize) -> Self {
         let count = values.len() as f64;
         let coordinates = values.first().map_or(0, Vec::len);
@@ -101,14 +104,14 @@ impl Periodic {
         Self { mean: (0..coordinates).map(|j| term(0, j).re).collect(), harmonics: (1..=harmonics).map(of).collect() }
     }
 
-    /// The same with so many harmonics: cut off, or zeros.
+    /// The motion with `count` harmonics: truncated, or extended by zeros.
     pub fn with_harmonics(&self, count: usize) -> Self {
         let mut all = self.clone();
         all.harmonics.resize(count, vec![ZERO; self.mean.len()]);
         all
     }
 
-    /// `self` + `part` (`other` − `self`).
+    /// Linear interpolation `self` + `part` (`other` − `self`).
     pub fn towards(&self, other: &Self, part: f64) -> Self {
         let other = other.with_harmonics(self.harmonics.len());
         let mix = |a: &Vec<Complex64>, b: &Vec<Complex64>| a.iter().zip(b).map(|(a, b)| a + (b - a) * part).collect();
@@ -120,7 +123,7 @@ impl Periodic {
 }
 
 impl Cycle {
-    /// κ = ω/x: the frequency that forces are those of.
+    /// Frequency κ = ω/u at which the aerodynamic forces are evaluated.
     pub fn kappa(&self) -> f64 {
         self.omega / self.speed
     }
@@ -131,13 +134,14 @@ impl Oscillator<'_> {
         self.springs.len()
     }
 
-    /// What spring `j` does beyond its stiffness at rest.
+    /// Nonlinear part of the force of spring `j`.
     fn beyond(&self, j: usize, q: f64) -> f64 {
         let spring = &self.springs[j];
         spring.force(q) - spring.force(0.0) - tangent(spring) * q
     }
 
-    /// Motions that a structure with the stiffness that a sine of this amplitude sees begins to grow, or ends to.
+    /// Flutter points of the structure with the equivalent stiffness for a sinusoidal motion of this amplitude, below
+    /// `upto`.
     pub fn begin(&self, amplitude: f64, upto: f64) -> Vec<(Kind, Cycle)> {
         let (c, n) = (self.coordinate, self.n());
         let count = INSTANTS[1];
@@ -163,7 +167,7 @@ impl Oscillator<'_> {
         crossings.into_iter().filter_map(cycle).collect()
     }
 
-    /// What the forces `forces` in a cycle have beyond those of small motions.
+    /// Nonlinear part of the forces `forces` in a cycle.
     pub fn beyond_small(&self, cycle: &Cycle, forces: &Periodic) -> Periodic {
         let (n, motion) = (self.n(), &cycle.motion);
         let of = |h: usize, q: &[Complex64]| -> Vec<Complex64> {
@@ -181,8 +185,9 @@ impl Oscillator<'_> {
         }
     }
 
-    /// The cycle near `guess` in which the first harmonic of the coordinate is `amplitude`, with so many harmonics; `beyond` is what the gas
-    /// does beyond small motions. `None` where Newton's method does not find one.
+    /// The cycle near `guess` in which the first harmonic of the coordinate has the given amplitude, with this number
+    /// of harmonics. `beyond` is the nonlinear part of the aerodynamic forces. `None` when Newton's method does not
+    /// converge.
     pub fn solve(&self, guess: &Cycle, amplitude: f64, harmonics: usize, beyond: Option<&Periodic>) -> Option<Cycle> {
         let n = self.n();
         let none = Periodic { mean: vec![0.0; n], harmonics: Vec::new() };
@@ -213,12 +218,12 @@ impl Oscillator<'_> {
     }
 }
 
-/// s'(0).
+/// Stiffness s'(0) at rest.
 fn tangent(spring: &Spring) -> f64 {
     spring.force(crate::math::jet::Jet::variable(0.0)).first
 }
 
-/// Units of the unknowns and of the equations.
+/// Scales of the unknowns and of the equations.
 struct Scale {
     coordinate: Vec<f64>,
     force: Vec<f64>,
@@ -244,7 +249,7 @@ impl Scale {
     }
 }
 
-/// Equations of one cycle.
+/// The equations of one cycle.
 struct Problem<'a> {
     own: &'a Oscillator<'a>,
     amplitude: f64,
@@ -254,7 +259,7 @@ struct Problem<'a> {
 }
 
 impl Problem<'_> {
-    /// Means, real and imaginary parts of all harmonics, ω and x, in their units.
+    /// Means, real and imaginary parts of all harmonics, ω and x, in scaled form.
     fn pack(&self, cycle: &Cycle) -> Vec<f64> {
         let motion = cycle.motion.with_harmonics(self.harmonics);
         let unit = &self.scale.coordinate;
@@ -279,7 +284,7 @@ impl Problem<'_> {
         Cycle { omega: ends[0] * self.scale.omega, x, speed: self.own.varied.speed(x), motion }
     }
 
-    /// All equations in units of their largest terms, and the greatest of them; `None` outside of what is physical.
+    /// All equations, each divided by its largest term, and the largest of them; `None` for unphysical values.
     fn residual(&self, y: &[f64]) -> Option<(Vec<f64>, f64)> {
         let cycle = self.unpack(y);
         if !(cycle.x > 0.0 && cycle.omega > 0.0) {
@@ -316,7 +321,7 @@ impl Problem<'_> {
         size.is_finite().then_some((r, size))
     }
 
-    /// What springs do beyond their stiffness.
+    /// Nonlinear part of the spring forces.
     fn springs(&self, motion: &Periodic) -> Periodic {
         let count = (INSTANTS[0] * self.harmonics).max(INSTANTS[1]);
         let at = |k: usize| {
@@ -326,7 +331,7 @@ impl Problem<'_> {
         Periodic::of_values(&(0..count).map(at).collect::<Vec<Vec<f64>>>(), self.harmonics)
     }
 
-    /// Rows one after another.
+    /// Jacobian of the equations, row by row.
     fn jacobian(&self, y: &[f64]) -> Option<Vec<f64>> {
         let n = y.len();
         let mut all = vec![0.0; n * n];

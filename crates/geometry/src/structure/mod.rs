@@ -1,16 +1,18 @@
-//! Structures that are not particles: a few coordinates q with masses, springs and dampers,
+//! Structures with a few coordinates q, which have masses, springs and dampers:
 //!
 //! M(q) q'' + g(q, q') + C q' + F(q) = Q + f(t),
 //!
-//! with the generalised forces Q of whatever surrounds the body (by virtual work, [`Placement::add_work`]) and forces f that depend on time
-//! alone. Three models have the same few functions: [`PlanarBody`] (typical section with or without flap, rigid body in the plane),
-//! [`RigidBody`] (in space) and modes; each says only what its inertia does, once, over any [`Scalar`], so that mass matrix, tangents and
-//! accelerations all come from that one formula. Springs ([`Spring`]: linear, cubic, free play) and dampers act on single coordinates.
-//! Coordinates that are not unknowns stay zero: the body as placed.
+//! with the generalised forces Q of the surroundings (by virtual work, [`Placement::add_work`]) and prescribed forces f
+//! of time. The models [`PlanarBody`] (typical section with or without flap, rigid body in 2-D), [`RigidBody`] (3-D)
+//! and modes have the same interface. Each defines only its inertial forces, once and generic in [`Scalar`]; mass
+//! matrix, tangents and accelerations follow from this definition by automatic differentiation. Springs ([`Spring`]:
+//! linear, cubic, free play) and dampers act on single coordinates. Coordinates that are not unknowns stay zero, which
+//! is the initial placement.
 //!
-//! Signs: x points downstream; displacements are positive along x, y and z, so that plunge is *up* positive (the literature of flutter
-//! has h down: h = −plunge); pitch is nose up positive (clockwise in the plane), a flap trailing edge down positive. Units are those of
-//! the solver (density and sound speed of the free stream, unit of length of the case), per unit span in the plane.
+//! Sign conventions: x is directed downstream. Displacements are positive along x, y and z, so that plunge is positive
+//! *up* (the flutter literature has h positive down: h = −plunge). Pitch is nose up positive (clockwise in 2-D), a flap
+//! trailing edge down positive. Units are those of the solver (density and sound speed of the free stream, unit of
+//! length of the case), per unit span in 2-D.
 mod describe;
 pub mod flutter;
 mod force;
@@ -35,92 +37,92 @@ use crate::math::jet::{Jet, Scalar};
 use crate::math::{Vector, dense, rotation, symmetric};
 use placement::{Effect, TurnedFlap};
 
-/// Right-hand sides that are solved for at once.
+/// Number of right-hand sides that are solved together.
 const AT_ONCE: usize = 8;
 
-/// What moves.
+/// Structural model: the kind of body and its inertia.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Model {
-    /// A rigid body in the plane, perhaps with a flap; coordinates `surge`, `plunge`, `pitch`, `flap`.
+    /// A rigid body in 2-D, optionally with a flap; coordinates `surge`, `plunge`, `pitch`, `flap`.
     Planar(PlanarBody),
-    /// A rigid body in space; coordinates `surge`, `sway`, `plunge`, `roll`, `pitch`, `yaw`.
+    /// A rigid body in 3-D; coordinates `surge`, `sway`, `plunge`, `roll`, `pitch`, `yaw`.
     Spatial(RigidBody),
     /// Modes, each with its name and generalised mass.
     Modal(Vec<(String, f64)>),
-    /// A body that plunges, pitches and bends, for forces of small motions: every coordinate has unit mass, and none moves another.
+    /// Plunge, pitch and modes with unit masses and without inertial coupling, for forces of small motions.
     Floating(Floating),
 }
 
-/// See [`Model::Floating`].
+/// Plunge, pitch and modes of a body, see [`Model::Floating`].
 #[derive(Clone, Debug, PartialEq)]
 pub struct Floating {
-    /// Point about which the body pitches, as placed.
+    /// Centre of rotation of pitch in the initial placement.
     pub pivot: [f64; 3],
-    /// Names of the coordinates: [`Floating::RIGID`], then those of the modes.
+    /// Names of the coordinates: [`Floating::RIGID`], followed by those of the modes.
     names: Vec<String>,
 }
 
 impl Floating {
-    /// Coordinates of the body as a whole, before those of its modes.
+    /// Names of the rigid-body coordinates, which precede the modes.
     pub const RIGID: [&str; 2] = ["plunge", "pitch"];
 
-    /// A body that pitches about `pivot` and bends in the modes `modes`.
+    /// A body with the centre of rotation `pivot` and modes of these names.
     pub fn new(pivot: [f64; 3], modes: impl IntoIterator<Item = String>) -> Self {
         let rigid = Self::RIGID.map(str::to_owned);
         Self { pivot, names: rigid.into_iter().chain(modes).collect() }
     }
 }
 
-/// A coordinate that is an unknown.
+/// An unknown coordinate.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Coordinate {
-    /// Its name in the model.
+    /// Name of the coordinate in the model.
     pub name: String,
     /// Spring.
     pub spring: Spring,
-    /// Coefficient of the damper, force over velocity.
+    /// Coefficient of viscous damping, force divided by velocity.
     pub damping: f64,
-    /// Force that depends on time.
+    /// Prescribed force as a function of time.
     pub force: ForceHistory,
-    /// Value at the start.
+    /// Initial value.
     pub initial: f64,
-    /// Rate at the start.
+    /// Initial rate.
     pub initial_rate: f64,
 }
 
-/// A body on springs, in `D` dimensions.
+/// An elastically supported or flexible body in `D` dimensions.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Structure<const D: usize> {
     model: Model,
     coordinates: Vec<Coordinate>,
-    /// Index of each coordinate among those of the model.
+    /// Index of each unknown coordinate among those of the model.
     places: Vec<usize>,
 }
 
-/// Why there is no such structure.
+/// Reason why a structure could not be constructed.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum StructureError {
-    /// No coordinate is an unknown.
+    /// There are no unknown coordinates.
     #[error("the structure has no coordinates\nhint: name those that are free to move")]
     Empty,
-    /// A coordinate that the model does not have, or has twice.
+    /// The model has no coordinate of this name, or it was given twice.
     #[error(
         "the structure has no coordinate `{name}`, or has it already\nhint: its coordinates are {known}, each once"
     )]
     Unknown {
-        /// The name.
+        /// Name of the coordinate.
         name: String,
-        /// What there is.
+        /// Names of the coordinates of the model.
         known: String,
     },
-    /// A model of another dimension.
+    /// The model has another dimension.
     #[error(
         "a structure in {wanted} dimensions cannot be in {dimension}\nhint: sections are plane, rigid bodies in space are not"
     )]
     Dimension {
-        /// That of the model.
+        /// Dimension of the model.
         wanted: usize,
-        /// That asked for.
+        /// Dimension of the case.
         dimension: usize,
     },
     /// The mass matrix is not positive definite.
@@ -131,43 +133,43 @@ pub enum StructureError {
     Inertia,
 }
 
-/// Small motions about a state: M δq'' + C δq' + K δq = δQ; rows one after another.
+/// Matrices of small motions about a state, M δq'' + C δq' + K δq = δQ; row by row.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Matrices {
-    /// M.
+    /// Mass matrix M.
     pub mass: Vec<f64>,
-    /// C, that of inertia included.
+    /// Damping matrix C, including the contribution of inertial forces.
     pub damping: Vec<f64>,
-    /// K, tangent.
+    /// Tangent stiffness matrix K.
     pub stiffness: Vec<f64>,
 }
 
-/// Accelerations with their derivatives; rows one after another.
+/// Accelerations with their derivatives; row by row.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Linearisation {
-    /// q''.
+    /// Accelerations q''.
     pub acceleration: Vec<f64>,
-    /// ∂q''/∂q = −M⁻¹K.
+    /// Derivative by the coordinates, ∂q''/∂q = −M⁻¹K.
     pub by_coordinate: Vec<f64>,
-    /// ∂q''/∂q' = −M⁻¹C.
+    /// Derivative by the rates, ∂q''/∂q' = −M⁻¹C.
     pub by_rate: Vec<f64>,
-    /// ∂q''/∂Q = M⁻¹.
+    /// Derivative by the generalised forces, ∂q''/∂Q = M⁻¹.
     pub by_load: Vec<f64>,
 }
 
-/// Energy of a structure.
+/// Energies of a structure.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Energy {
-    /// q'ᵀ M q'/2.
+    /// Kinetic energy q'ᵀ M q'/2.
     pub kinetic: f64,
-    /// Of springs and gravity; zero for the body as placed with its springs at ease.
+    /// Potential energy of springs and gravity; zero in the initial placement with unloaded springs.
     pub potential: f64,
-    /// Power that dampers take.
+    /// Power dissipated by the dampers.
     pub dissipation: f64,
 }
 
 impl Model {
-    /// Names of its coordinates.
+    /// Names of the coordinates of the model.
     pub fn names(&self) -> Vec<&str> {
         match self {
             Self::Planar(body) => planar::NAMES[..if body.flap.is_some() { 4 } else { 3 }].to_vec(),
@@ -177,7 +179,7 @@ impl Model {
         }
     }
 
-    /// Number of values that the formulas take.
+    /// Number of coordinates of the model.
     fn width(&self) -> usize {
         match self {
             Self::Planar(_) => planar::NAMES.len(),
@@ -198,7 +200,8 @@ impl Model {
 }
 
 impl<const D: usize> Structure<D> {
-    /// The structure whose unknowns are `coordinates` of `model`, in their order.
+    /// The structure with the unknowns `coordinates` of `model`, in this order. Fails when a coordinate does not exist
+    /// or the mass matrix is not positive definite.
     pub fn new(model: Model, coordinates: Vec<Coordinate>) -> Result<Self, StructureError> {
         let wanted = match &model {
             Model::Planar(_) => 2,
@@ -226,28 +229,28 @@ impl<const D: usize> Structure<D> {
         }
     }
 
-    /// Number of coordinates.
+    /// Number of unknown coordinates.
     pub fn len(&self) -> usize {
         self.coordinates.len()
     }
 
-    /// True when there are none, which [`Structure::new`] refuses.
+    /// Always false: [`Structure::new`] rejects structures without coordinates.
     pub fn is_empty(&self) -> bool {
         self.coordinates.is_empty()
     }
 
-    /// What moves.
+    /// The structural model.
     pub fn model(&self) -> &Model {
         &self.model
     }
 
-    /// The unknowns.
+    /// The unknown coordinates.
     pub fn coordinates(&self) -> &[Coordinate] {
         &self.coordinates
     }
 
-    /// True where coordinate number `k` is an angle, in radians: those of sections and rigid bodies may be, whatever a mode is called
-    /// is none.
+    /// True when coordinate `k` is an angle in radians; coordinates of sections and rigid bodies may be, those of modes
+    /// are not, whatever their name.
     pub fn is_angle(&self, k: usize) -> bool {
         let turns = |name: &str| Freedom::ALL.iter().any(|f| f.turns() && f.name() == name);
         match &self.model {
@@ -257,34 +260,35 @@ impl<const D: usize> Structure<D> {
         }
     }
 
-    /// The state [q, q'] at the start.
+    /// Initial state [q, q'].
     pub fn initial(&self) -> Vec<f64> {
         let (q, v) = (self.coordinates.iter().map(|c| c.initial), self.coordinates.iter().map(|c| c.initial_rate));
         q.chain(v).collect()
     }
 
-    /// Values of all coordinates of the model.
+    /// Values of all coordinates of the model; coordinates that are not unknowns are zero.
     fn spread<S: Scalar>(&self, values: &[S]) -> Vec<S> {
         let mut all = vec![S::constant(0.0); self.model.width()];
         self.places.iter().zip(values).for_each(|(place, value)| all[*place] = *value);
         all
     }
 
-    /// M(q) a + g(q, v) + C v + F(q).
+    /// Internal forces M(q) a + g(q, v) + C v + F(q).
     fn internal<S: Scalar>(&self, q: &[S], v: &[S], a: &[S]) -> Vec<S> {
         let inertial = self.model.inertial(&self.spread(q), &self.spread(v), &self.spread(a));
         let parts = self.coordinates.iter().zip(&self.places).enumerate();
         parts.map(|(k, (c, place))| inertial[*place] + c.spring.force(q[k]) + S::constant(c.damping) * v[k]).collect()
     }
 
-    /// M(q) a + g(q, v) + C v + F(q) − Q − f(t): zero where the equations hold.
+    /// Residual M(q) a + g(q, v) + C v + F(q) − Q − f(t) of the equations of motion, for q, v, a and the generalised
+    /// forces `load` = Q.
     pub fn residual(&self, t: f64, [q, v, a]: [&[f64]; 3], load: &[f64]) -> Vec<f64> {
         let internal = self.internal(q, v, a);
         let outer = self.coordinates.iter().zip(load).map(|(c, load)| c.force.at(t) + load);
         internal.iter().zip(outer).map(|(i, o)| i - o).collect()
     }
 
-    /// Derivatives of the internal forces by the values in `which` of q, v and a.
+    /// Derivatives of the internal forces by q, v or a; `which` is its index.
     fn derivative(&self, point: [&[f64]; 3], which: usize) -> Vec<f64> {
         let n = self.len();
         let mut matrix = vec![0.0; n * n];
@@ -298,7 +302,8 @@ impl<const D: usize> Structure<D> {
         matrix
     }
 
-    /// Angular frequencies of small undamped motions about the coordinates `q`, rising; those of a motion that diverges count as zero.
+    /// Angular frequencies of small undamped vibrations about the coordinates `q`, ascending; those of unstable motions
+    /// count as zero.
     pub fn natural_frequencies(&self, q: &[f64]) -> Vec<f64> {
         let matrices = self.matrices(q, &vec![0.0; self.len()]);
         let squares = symmetric::generalised_eigenvalues(&matrices.stiffness, &matrices.mass, self.len());
@@ -312,7 +317,7 @@ impl<const D: usize> Structure<D> {
         Matrices { mass: by(2), damping: by(1), stiffness: by(0) }
     }
 
-    /// q'' for the generalised forces `load`.
+    /// Accelerations q'' for the generalised forces `load`.
     pub fn accelerations(&self, t: f64, [q, v]: [&[f64]; 2], load: &[f64]) -> Vec<f64> {
         let zero = vec![0.0; self.len()];
         let mut mass = self.derivative([q, v, &zero], 2);
@@ -321,7 +326,7 @@ impl<const D: usize> Structure<D> {
         right.into_iter().map(|[a]| a).collect()
     }
 
-    /// q'' with its derivatives.
+    /// Accelerations q'' with their derivatives.
     pub fn linearise(&self, t: f64, [q, v]: [&[f64]; 2], load: &[f64]) -> Linearisation {
         let n = self.len();
         let acceleration = self.accelerations(t, [q, v], load);
@@ -339,18 +344,18 @@ impl<const D: usize> Structure<D> {
         Linearisation { acceleration, by_coordinate, by_rate, by_load }
     }
 
-    /// The rate of the state u = [q, q'] as a system of first order.
+    /// Time derivative of the state u = [q, q'].
     pub fn rates(&self, t: f64, u: &[f64], load: &[f64]) -> Vec<f64> {
         let (q, v) = u.split_at(self.len());
         v.iter().copied().chain(self.accelerations(t, [q, v], load)).collect()
     }
 
-    /// Forces f(t).
+    /// Prescribed forces f(t).
     pub fn forces(&self, t: f64) -> Vec<f64> {
         self.coordinates.iter().map(|c| c.force.at(t)).collect()
     }
 
-    /// Energies, and the power that dampers take.
+    /// Energies and dissipated power.
     pub fn energy(&self, q: &[f64], v: &[f64]) -> Energy {
         let n = self.len();
         let mass = self.derivative([q, v, &vec![0.0; n]], 2);
@@ -366,7 +371,8 @@ impl<const D: usize> Structure<D> {
         Energy { kinetic, potential: springs - at_ease + weight, dissipation }
     }
 
-    /// What is wrong with the coordinates `q`, if anything.
+    /// A message when the coordinates `q` are not admissible: not finite, or a rotation beyond a full turn; `None`
+    /// otherwise.
     pub fn fault(&self, q: &[f64]) -> Option<String> {
         if let Some(k) = q.iter().position(|q| !q.is_finite()) {
             return Some(format!("`{}` is {}", self.coordinates[k].name, q[k]));
@@ -377,7 +383,7 @@ impl<const D: usize> Structure<D> {
         (turn > spatial::LARGEST_TURN).then(far)
     }
 
-    /// Where the coordinates `q` put the body.
+    /// Position of the body for the coordinates `q`.
     pub fn placement(&self, q: &[f64]) -> Placement<D> {
         let all = self.spread(q);
         let still = Placement {
@@ -428,7 +434,7 @@ impl<const D: usize> Structure<D> {
         }
     }
 
-    /// Effects of the unknowns of a rigid body: `shifts` displacements, then angles, then a flap in the plane.
+    /// Effects of the unknown coordinates of a rigid body: `shifts` displacements, then angles, then a flap in 2-D.
     fn effects(&self, shifts: usize, derivative: impl Fn(usize) -> [Vector<D>; D]) -> Vec<Effect<D>> {
         let effect = |place: &usize| match place {
             k if *k < shifts => Effect::Shift(Vector::axis(*k)),
@@ -439,13 +445,13 @@ impl<const D: usize> Structure<D> {
     }
 }
 
-/// Rows of the clockwise rotation by `angle` in the plane.
+/// Rows of the clockwise rotation by `angle` in 2-D.
 fn clockwise<const D: usize>(angle: f64) -> [Vector<D>; D] {
     let columns = [[1.0, 0.0], [0.0, 1.0]].map(|axis| planar::turn(angle, &axis));
     std::array::from_fn(|i| Vector::from_fn(|j| columns[j][i]))
 }
 
-/// Its derivative by the angle.
+/// Rows of its derivative by the angle.
 fn clockwise_derivative<const D: usize>(angle: f64) -> [Vector<D>; D] {
     clockwise(angle + std::f64::consts::FRAC_PI_2)
 }

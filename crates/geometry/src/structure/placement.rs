@@ -1,33 +1,34 @@
-//! Where the coordinates put the points of a body, and the work of forces there.
+//! Positions of the points of a body for given coordinates, and virtual work of forces.
 //!
-//! x(X, q) = p + d + R (X' + Σ q_m φ_m(X) − p), X' = X but behind a hinge: there X' = X + w (R_β − 1)(X − l), w rising from 0 to 1 over the
-//! blend. By virtual work a force F at the point X has the generalised forces Q_k = F · ∂x/∂q_k. The shapes φ_m of modes belong to
-//! whoever holds the points: they come as the list `bends` of displacements at X for unit coordinates, empty for rigid bodies.
+//! x(X, q) = p + d + R (X' + Σ q_m φ_m(X) − p). Ahead of a hinge X' = X; behind it X' = X + w (R_β − 1)(X − l), where w
+//! increases from 0 to 1 over the blend length. By virtual work, a force F at the point X has the generalised forces
+//! Q_k = F · ∂x/∂q_k. The caller evaluates the mode shapes φ_m: they are passed as the list `bends` of displacements at
+//! X for unit coordinates, empty for rigid bodies.
 use crate::math::Vector;
 
-/// A rotation followed by a shift, x = R X + s.
+/// A rotation followed by a translation, x = R X + s.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Pose<const D: usize> {
     /// Rows of R.
     pub rotation: [Vector<D>; D],
-    /// s.
+    /// Translation s.
     pub shift: Vector<D>,
 }
 
-/// How a coordinate moves points.
+/// Effect of a coordinate on the points.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Effect<const D: usize> {
-    /// All alike along this direction.
+    /// The same displacement of all points along this direction.
     Shift(Vector<D>),
-    /// By the derivative of R, of these rows.
+    /// A rotation with these rows of the derivative of R.
     Turn([Vector<D>; D]),
-    /// As the flap turns.
+    /// Rotation of the flap.
     Flap,
-    /// By this mode.
+    /// Displacement in this mode.
     Mode(usize),
 }
 
-/// A flap that has turned.
+/// A deflected flap.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct TurnedFlap<const D: usize> {
     pub(super) hinge: Vector<D>,
@@ -38,7 +39,7 @@ pub(super) struct TurnedFlap<const D: usize> {
     pub(super) derivative: [Vector<D>; D],
 }
 
-/// The body for given coordinates.
+/// The position of a body for given coordinates.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Placement<const D: usize> {
     pub(super) pivot: Vector<D>,
@@ -54,7 +55,7 @@ fn times<const D: usize>(rows: &[Vector<D>; D], x: &Vector<D>) -> Vector<D> {
 }
 
 impl<const D: usize> TurnedFlap<D> {
-    /// w at `x`: 0 ahead of the hinge, 1 behind, a cubic over the blend.
+    /// Blend weight w at `x`: 0 ahead of the hinge, 1 behind it, a cubic in between.
     fn weight(&self, x: &Vector<D>) -> f64 {
         let behind = x[0] - self.hinge[0];
         if self.blend == 0.0 {
@@ -71,36 +72,36 @@ impl<const D: usize> TurnedFlap<D> {
 }
 
 impl<const D: usize> Placement<D> {
-    /// Where the body goes as a whole: flap and modes left aside.
+    /// Rigid motion of the body, without flap and modes.
     pub fn pose(&self) -> Pose<D> {
         Pose { rotation: self.rotation, shift: self.pivot + self.shift - times(&self.rotation, &self.pivot) }
     }
 
-    /// Coordinates of the modes, all of them, in their order.
+    /// Coordinates of all modes, in their order.
     pub fn amplitudes(&self) -> &[f64] {
         &self.amplitudes
     }
 
-    /// True when points move against one another: by a flap or by modes.
+    /// True when the body deforms, by a flap or by modes.
     pub fn bends(&self) -> bool {
         self.flap.is_some() || !self.amplitudes.is_empty()
     }
 
-    /// The point `x` in axes of the body, bent.
+    /// The point `x` in body axes, after deformation.
     fn bent(&self, x: &Vector<D>, bends: &[Vector<D>]) -> Vector<D> {
         let flap = self.flap.as_ref().map_or(Vector::ZERO, |f| f.displacement(x));
         self.amplitudes.iter().zip(bends).fold(*x + flap, |sum, (q, bend)| sum + *bend * *q)
     }
 
-    /// Where the point goes that was at `x` as placed.
+    /// Position of the point that is at `x` in the initial placement.
     pub fn point(&self, x: &Vector<D>, bends: &[Vector<D>]) -> Vector<D> {
         let bent = self.bent(x, bends);
         let arm = bent - self.pivot;
-        // in this order a body that has not moved is where it was to the last bit
+        // in this order, a body that has not moved keeps its position to the last bit
         bent + self.shift + (times(&self.rotation, &arm) - arm)
     }
 
-    /// ∂x/∂q_k at the point that was at `x` as placed, for every unknown coordinate.
+    /// ∂x/∂q_k at the point that is at `x` in the initial placement, for every unknown coordinate.
     pub fn tangents<'a>(
         &'a self,
         x: &'a Vector<D>,
@@ -117,12 +118,12 @@ impl<const D: usize> Placement<D> {
         })
     }
 
-    /// Velocity of that point for the rates of the coordinates.
+    /// Velocity of this point for the given rates of the coordinates.
     pub fn velocity(&self, x: &Vector<D>, bends: &[Vector<D>], rates: &[f64]) -> Vector<D> {
         self.tangents(x, bends).zip(rates).fold(Vector::ZERO, |sum, (tangent, rate)| sum + tangent * *rate)
     }
 
-    /// Adds the generalised forces of the force `force` at that point to `load`.
+    /// Adds the generalised forces of the force `force` at this point to `load`.
     pub fn add_work(&self, x: &Vector<D>, bends: &[Vector<D>], force: &Vector<D>, load: &mut [f64]) {
         for (tangent, load) in self.tangents(x, bends).zip(load) {
             *load += force.dot(&tangent);

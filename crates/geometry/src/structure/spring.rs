@@ -1,19 +1,19 @@
-//! Springs: the force on one coordinate that depends on it alone.
+//! Springs: force on a single coordinate that depends on this coordinate only.
 //!
-//! With the elongation e beyond the play, e = 0 for |q − r| ≤ g, else q − r ∓ g, a spring pulls back with k e + k₃ e³. The rest
-//! position r is where it is at ease, g is half the gap of the play. Its energy is k e²/2 + k₃ e⁴/4.
+//! With the elongation e beyond the free play, e = 0 for |q − r| ≤ g, otherwise q − r ∓ g, the restoring force of a
+//! spring is k e + k₃ e³. r is the rest position and g half the free play. The energy is k e²/2 + k₃ e⁴/4.
 use crate::math::jet::Scalar;
 
-/// A spring on one coordinate; all zeros: none.
+/// A spring on one coordinate; without a spring, all values are zero.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Spring {
-    /// k, force (moment) over displacement (angle).
+    /// Linear stiffness k, force (moment) divided by displacement (angle).
     pub stiffness: f64,
-    /// k₃, force over displacement cubed.
+    /// Cubic coefficient k₃, force divided by displacement cubed.
     pub cubic: f64,
-    /// g, half the gap in which the spring does nothing.
+    /// Half the free play g, in which the force is zero.
     pub play: f64,
-    /// r, where the spring is at ease.
+    /// Rest position r.
     pub rest: f64,
 }
 
@@ -23,7 +23,7 @@ impl Spring {
         Self { stiffness, ..Self::default() }
     }
 
-    /// e of the coordinate `q`.
+    /// Elongation e at the coordinate `q`.
     fn elongation<S: Scalar>(&self, q: S) -> S {
         let from_rest = q - S::constant(self.rest);
         if self.play == 0.0 {
@@ -35,13 +35,13 @@ impl Spring {
         })
     }
 
-    /// k e + k₃ e³, the force that the spring resists with.
+    /// Restoring force k e + k₃ e³ at the coordinate `q`.
     pub fn force<S: Scalar>(&self, q: S) -> S {
         let e = self.elongation(q);
         e * (S::constant(self.stiffness) + S::constant(self.cubic) * e * e)
     }
 
-    /// Energy stored in the spring.
+    /// Elastic energy at the coordinate `q`.
     pub fn energy(&self, q: f64) -> f64 {
         let square = self.elongation(q).powi(2);
         square * (0.5 * self.stiffness + 0.25 * self.cubic * square)

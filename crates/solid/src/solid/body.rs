@@ -1,4 +1,4 @@
-//! What a structure of particles is: the cloud, its materials, where it is held and what acts on it.
+//! Definition of a solid: particles, materials, supports, loads and contact. SI units unless stated otherwise.
 use std::ops::Deref;
 use std::sync::OnceLock;
 
@@ -7,113 +7,114 @@ use super::rows::{Row, row};
 use crate::math::Vector;
 use crate::physics::solid::{MOST_HISTORY, Material};
 
-/// Cells between particles.
+/// Cells between the particles, for visualisation.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Cells {
-    /// Triangles of plane bodies, counterclockwise at rest.
+    /// Triangles of 2-D bodies, counterclockwise in the undeformed state.
     pub triangles: Vec<[u32; 3]>,
-    /// Tetrahedra of bodies in space, of positive volume at rest.
+    /// Tetrahedra of 3-D bodies, with positive volume in the undeformed state.
     pub tetrahedra: Vec<[u32; 4]>,
 }
 
-/// What happens across a plane body.
+/// Assumption for the direction normal to a 2-D body.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Plane {
-    /// It cannot widen or shrink: F₃₃ = 1.
+    /// Plane strain: F₃₃ = 1.
     Strain,
-    /// Nothing holds it: P₃₃ = 0.
+    /// Plane stress: P₃₃ = 0.
     Stress,
-    /// The y axis is an axis of revolution, x the radius: F₃₃ = 1 + u_x/x. Particles are those of a section that was
-    /// [`turned`](super::particles::Fill::turned).
+    /// Axial symmetry about the y axis, where x is the radius: F₃₃ = 1 + u_x/x. The particles must be those of a
+    /// section made into a body of revolution by [`turned`](super::particles::Fill::turned).
     Axisymmetric,
 }
 
-/// What a function of time is.
+/// A function of time [s].
 pub type InTime<T> = Box<dyn Fn(f64) -> T + Send + Sync>;
 
-/// Particles that are held along some axes.
+/// A support: particles whose displacement is prescribed along some axes.
 pub struct Support<const D: usize> {
-    /// Which.
+    /// Indices of the particles.
     pub particles: Vec<u32>,
-    /// True for axes along which they are held.
+    /// True for the axes along which the displacement is prescribed.
     pub fixed: [bool; D],
-    /// Displacement along these axes; `None` where they stay.
+    /// Displacement along these axes as a function of time; `None`: zero.
     pub motion: Option<InTime<Vector<D>>>,
 }
 
-/// What acts on particles of the surface.
+/// Kind of a load on the surface.
 pub enum Action<const D: usize> {
-    /// A pressure against the surface, which follows it.
+    /// Pressure [Pa] normal to the deformed surface (follower load).
     Pressure(f64),
-    /// A force per area at rest, whose direction stays.
+    /// Force per undeformed area [Pa], with a fixed direction.
     Traction(Vector<D>),
 }
 
-/// A load on parts of the surface.
+/// A load on part of the surface.
 pub struct Load<const D: usize> {
-    /// Area at rest that each particle has in it, as a vector.
+    /// Particles with the part of their undeformed area vector on which the load acts.
     pub areas: Vec<(u32, Vector<D>)>,
-    /// What acts there.
+    /// Kind and magnitude of the load.
     pub action: Action<D>,
-    /// Factor that depends on time.
+    /// Factor as a function of time.
     pub history: InTime<f64>,
 }
 
-/// A rigid plane; bodies are where its unit normal points to.
+/// A rigid plane. Bodies lie on the side to which its unit normal points.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RigidPlane<const D: usize> {
-    /// A point of it.
+    /// A point of the plane.
     pub point: Vector<D>,
     /// Unit normal.
     pub normal: Vector<D>,
 }
 
-/// What touches.
+/// Contact conditions.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Contact<const D: usize> {
     /// Rigid planes.
     pub planes: Vec<RigidPlane<D>>,
-    /// Bodies touch one another.
+    /// True when the bodies can touch one another.
     pub bodies: bool,
-    /// s, the stiffness over that of a column of the body one spacing high.
+    /// Penalty factor s: contact stiffness relative to that of a column of the body one spacing high.
     pub stiffness: f64,
-    /// Coefficient of Coulomb's friction on planes.
+    /// Coefficient of Coulomb friction on the planes.
     pub friction: f64,
 }
 
-/// How much is smoothed and lost beside what the materials say.
+/// Stabilisation and damping in addition to the material laws.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Damping {
-    /// α of the residual's stiffness, in shear moduli.
+    /// Stabilising stiffness α of the displacement residuals, in shear moduli.
     pub stabilisation: f64,
-    /// β of the residual's viscosity, in ρ c h.
+    /// Viscosity β of the velocity residuals, in ρ c h.
     pub viscosity: f64,
-    /// Rate of decay in proportion to mass, 1/s.
+    /// Damping proportional to mass: decay rate [1/s].
     pub mass: f64,
-    /// Damping in proportion to stiffness, s: stress of the rate of strain over that of the strain.
+    /// Damping proportional to stiffness [s]: stress due to the strain rate divided by the stress due to the strain.
     pub stiffness: f64,
 }
 
-/// A structure of particles, one or several bodies, which do not see one another: its parts, and what follows from them.
+/// A solid of one or several bodies that are not connected: its definition and quantities derived from it.
 pub struct Solid<const D: usize> {
     parts: Parts<D>,
-    /// Places at rest.
+    /// Undeformed positions of the particles.
     pub(super) places: Vec<Row>,
-    /// Mass of each particle.
+    /// Mass of each particle [kg].
     pub(super) mass: Vec<f64>,
-    /// Axes along which each particle is held, one bit each.
+    /// Axes along which each particle is constrained, as bits.
     pub(super) held: Vec<u8>,
-    /// V times the number of dimensions over the number of neighbours: weight of the residuals around each particle.
+    /// Weight of the residuals around each particle: volume times number of dimensions divided by number of neighbours.
     pub(super) weight: Vec<f64>,
-    /// c of the residuals of velocity, β ρ c_p h times that weight, and what is damped in proportion to stiffness.
+    /// Coefficient c of the velocity residuals, β ρ c_p h times that weight, plus the damping proportional to
+    /// stiffness.
     pub(super) viscous: Vec<f64>,
-    /// Numbers of history of a particle.
+    /// Number of history variables of a particle.
     pub(super) width: usize,
-    /// 1/x about an axis of revolution, 0 on it; empty elsewhere.
+    /// 1/x in a body of revolution, 0 on its axis; empty for other bodies.
     pub(super) per_radius: Vec<f64>,
-    /// The longest stable step over the least h/c, and that without damping, once they are known.
+    /// Stable step with and without damping as a multiple of the smallest h/c, computed at the first use.
     pub(super) factor: OnceLock<[f64; 2]>,
-    /// Cells between the particles, once they are known.
+    /// Cells between the particles, computed at the first use.
     pub(super) cells: OnceLock<Cells>,
 }
 
@@ -132,20 +133,22 @@ impl<const D: usize> Deref for Solid<D> {
     }
 }
 
-/// Mass of a particle in ρ h^D, of a whole turn about an axis, below which it takes from its neighbours: those at sharp edges hold so little that they would decide
-/// the time step.
-const LEAST_MASS: f64 = 0.25;
+/// Smallest mass of a particle in units of ρ h^D (of a complete ring in a body of revolution). Lighter particles take
+/// mass from their neighbours: those at sharp edges represent so little volume that they would determine the time step.
+const MIN_MASS: f64 = 0.25;
 
-/// Mass of each particle: that of its volume, but the lightest take what they lack from heavier neighbours, as far as these can give.
+/// Mass of each particle: that of its volume, but particles below the smallest mass take the difference from heavier
+/// neighbours as far as these exceed it.
 fn masses<const D: usize>(particles: &Particles<D>, density: impl Fn(usize) -> f64) -> Vec<f64> {
     let mut mass: Vec<f64> = (0..particles.len()).map(|i| density(i) * particles.volume[i]).collect();
     let over: Vec<f64> = mass
         .iter()
         .enumerate()
-        .map(|(i, m)| m - LEAST_MASS * density(i) * particles.spacing[i].powi(D as i32) * particles.around(i))
+        .map(|(i, m)| m - MIN_MASS * density(i) * particles.spacing[i].powi(D as i32) * particles.around(i))
         .collect();
     let near = |i: usize| particles.of(i).iter().map(|e| e.other as usize);
-    // what each light particle asks of all its neighbours over what they have to give, and what is asked of each of these
+    // the mass that each light particle lacks, relative to what its neighbours can give, and the total request to each
+    // of these
     let ask = |i: usize| -over[i].min(0.0) / near(i).map(|j| over[j].max(0.0)).sum::<f64>().max(f64::MIN_POSITIVE);
     let asks: Vec<f64> = (0..mass.len()).map(|i| ask(i).min(1.0)).collect();
     let asked: Vec<f64> = (0..mass.len()).map(|j| near(j).map(|i| asks[i]).sum::<f64>()).collect();
@@ -159,34 +162,34 @@ fn masses<const D: usize>(particles: &Particles<D>, density: impl Fn(usize) -> f
     mass
 }
 
-/// All that a structure is made of.
+/// Definition of a solid.
 pub struct Parts<const D: usize> {
-    /// The cloud.
+    /// The undeformed particles with their gradients.
     pub particles: Particles<D>,
-    /// Body of each particle.
+    /// Index of the body of each particle.
     pub body: Vec<u16>,
     /// Materials.
     pub materials: Vec<Material>,
-    /// Material of each particle.
+    /// Index of the material of each particle.
     pub material: Vec<u16>,
-    /// What happens across a plane body.
+    /// Assumption for the direction normal to a 2-D body.
     pub plane: Plane,
-    /// Acceleration of gravity.
+    /// Acceleration of gravity [m/s²].
     pub gravity: Vector<D>,
-    /// Damping.
+    /// Stabilisation and damping.
     pub damping: Damping,
     /// Supports.
     pub supports: Vec<Support<D>>,
     /// Loads.
     pub loads: Vec<Load<D>>,
-    /// What touches.
+    /// Contact conditions, if any.
     pub contact: Option<Contact<D>>,
-    /// Time is the part of loads, gravity and motions that acts: for equilibrium.
+    /// True when time is a load factor from 0 to 1 on loads, gravity and prescribed motions, for static equilibrium.
     pub ramped: bool,
 }
 
 impl<const D: usize> Solid<D> {
-    /// The structure made of `parts`.
+    /// Prepares a solid of these `parts`.
     pub fn new(parts: Parts<D>) -> Self {
         let particles = &parts.particles;
         let (n, h) = (particles.len(), &particles.spacing);
@@ -202,7 +205,7 @@ impl<const D: usize> Solid<D> {
             let bits = (0..D).filter(|d| support.fixed[*d]).map(|d| 1u8 << d).sum::<u8>();
             support.particles.iter().for_each(|i| held[*i as usize] |= bits);
         }
-        // one more for what is lost, and for the stretch across a plane body
+        // one more for the dissipated energy, and one for the stretch normal to the plane
         let own = parts.materials.iter().map(Material::history_len).max().unwrap_or(0);
         let width = own + usize::from(own > 0) + usize::from(parts.plane == Plane::Stress);
         assert!(own <= MOST_HISTORY, "a material keeps more history than there is room for");
@@ -228,39 +231,39 @@ impl<const D: usize> Solid<D> {
         self.particles.len()
     }
 
-    /// True when there are none.
+    /// True when there are no particles.
     pub fn is_empty(&self) -> bool {
         self.particles.is_empty()
     }
 
-    /// Material of a particle.
+    /// Material of particle `i`.
     #[inline(always)]
     pub fn material_of(&self, i: usize) -> &Material {
         &self.materials[usize::from(self.material[i])]
     }
 
-    /// Mass of each particle.
+    /// Mass of each particle [kg].
     pub fn mass(&self) -> &[f64] {
         &self.mass
     }
 
-    /// True where a particle is held along an axis.
+    /// True when particle `i` is constrained along an axis.
     #[inline(always)]
     pub fn is_held(&self, i: usize, axis: usize) -> bool {
         self.held[i] >> axis & 1 == 1
     }
 
-    /// Numbers of history of a particle.
+    /// Number of history variables of a particle.
     pub fn history_width(&self) -> usize {
         self.width
     }
 
-    /// True when a material remembers: what it does next depends on more than its deformation.
+    /// True when the response of a material depends on its history.
     pub fn remembers(&self) -> bool {
         self.materials.iter().any(|m| m.history_len() > 0)
     }
 
-    /// History of the virgin structure.
+    /// History variables of the undeformed solid that was never loaded.
     pub fn virgin(&self) -> Vec<f64> {
         let mut history = vec![0.0; self.len() * self.width];
         if self.width > 0 {
@@ -275,18 +278,19 @@ impl<const D: usize> Solid<D> {
         history
     }
 
-    /// Part of what acts at time `t`.
+    /// Load factor at time `t`.
     pub(super) fn part(&self, t: f64) -> f64 {
         if self.ramped { t } else { 1.0 }
     }
 
-    /// Where in the history of a particle that is lost stands which its material has lost; `None` where none loses.
+    /// Index, in the history of a particle, of the energy dissipated by its material; `None` where no material
+    /// dissipates.
     #[inline(always)]
     pub(super) fn lost_at(&self) -> Option<usize> {
         (self.width + usize::from(self.plane != Plane::Stress)).checked_sub(2)
     }
 
-    /// Puts held particles where they are to be at time `t`.
+    /// Sets the prescribed displacements at time `t`.
     pub fn hold(&self, t: f64, displacement: &mut [[f64; D]]) {
         for support in &self.supports {
             let moved = support.motion.as_ref().map_or(Vector::ZERO, |motion| motion(t) * self.part(t));

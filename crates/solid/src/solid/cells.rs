@@ -1,15 +1,16 @@
-//! Cells between the particles of solids, for tools that colour, cut and warp.
+//! Cells between the particles of solids, for visualisation.
 //!
-//! Triangles in the plane and tetrahedra in space between the particles of each body at rest: a constrained Delaunay triangulation
-//! whose outlines are the facets of the surface, and a Delaunay tetrahedralisation without what is outside. They are for looking
-//! alone, the solver does not know them; they stay the same as the body deforms.
+//! Triangles (2-D) and tetrahedra (3-D) connect the particles of each undeformed body: a constrained Delaunay
+//! triangulation bounded by the facets of the surface, and a Delaunay tetrahedralisation without the tetrahedra
+//! outside. They serve for colour plots, cuts and warping in viewers only; the solver does not use them. They remain
+//! the same as the body deforms.
 use super::body::{Cells, Solid};
 use crate::math::Vector;
 use crate::math::tetrahedra::{MOST, tetrahedralise_within};
 use crate::math::triangulation::triangulate_within;
 
 impl<const D: usize> Solid<D> {
-    /// The cells between its particles, found when they are asked for the first time.
+    /// The cells between the particles; they are computed at the first call.
     pub fn cells(&self) -> &Cells {
         self.cells.get_or_init(|| {
             let mut all = Cells::default();
@@ -23,7 +24,7 @@ impl<const D: usize> Solid<D> {
         })
     }
 
-    /// The surface as triangles, seen from outside counterclockwise; nothing in the plane.
+    /// The surface as triangles, counterclockwise when viewed from outside; empty in 2-D.
     pub fn skin(&self) -> Vec<[u32; 3]> {
         let of = |corners: &[u32]| match *corners {
             [a, b, c] => vec![[a, b, c]],
@@ -33,7 +34,7 @@ impl<const D: usize> Solid<D> {
         self.particles.facets.iter().flat_map(|facet| of(facet.corners())).collect()
     }
 
-    /// Adds the cells of the body made of the particles `own`.
+    /// Adds the cells of the body that consists of the particles `own`.
     fn add_cells(&self, own: &[u32], all: &mut Cells) {
         let particles = &self.particles;
         let inwards = |i: u32| {

@@ -1,29 +1,29 @@
-//! Contact by penalty: of a structure with rigid planes, and of its bodies with one another.
+//! Contact by the penalty method, of a solid with rigid planes and of its bodies with one another.
 //!
-//! A particle of the surface that is a depth g behind a plane is pushed out by k g with k = s (K + 4/3 μ) A/h, so that the energy
-//! ½ k g² is given back. Two particles of the surfaces of different bodies that are nearer to one another than a spacing are
-//! pushed apart along their line in the same way: bodies touch one spacing apart. Friction is Coulomb's, smoothed where next to
-//! nothing slides.
+//! A surface particle that penetrates a plane by the depth g is pushed back by the force k g with k = s (K + 4/3 μ)
+//! A/h, so that the energy ½ k g² is recovered. Two surface particles of different bodies that are nearer to each other
+//! than one spacing are pushed apart along their connecting line in the same way; bodies in contact are therefore one
+//! spacing apart. Friction follows Coulomb's law, regularised at small sliding velocities.
 use super::body::{Contact, Solid};
 use super::forces::State;
 use crate::cloud::grid::Grid;
 use crate::math::Vector;
 use crate::math::reduce::maximum;
 
-/// Sliding slower than this part of the speed of pressure waves rubs less.
+/// Sliding velocity, as a fraction of the speed of pressure waves, below which friction is reduced in proportion.
 const STICKS: f64 = 1e-4;
 
-/// What contact does with one particle, or a pair.
+/// Contact force on one particle or one pair.
 struct Push<const D: usize> {
     force: Vector<D>,
     energy: f64,
 }
 
 impl<const D: usize> Solid<D> {
-    /// Stiffness of the contact of a particle of the surface.
+    /// Contact stiffness k of a surface particle.
     pub(super) fn contact_stiffness(&self, i: usize, stiffness: f64) -> f64 {
         let h = self.particles.spacing[i];
-        // a corner belongs to sides whose areas cancel in part
+        // at a corner, the areas of the adjacent sides cancel in part
         let area = self.particles.area[i].norm().max(0.5 * h.powi(D as i32 - 1) * self.particles.around(i));
         stiffness * self.material_of(i).moduli.pressure_wave() * area / h
     }
@@ -32,7 +32,7 @@ impl<const D: usize> Solid<D> {
         self.particles.area[i] != Vector::ZERO
     }
 
-    /// Calls `f(i, push, sliding)` for every particle behind a plane.
+    /// Calls `f(i, push, sliding)` for every particle that penetrates a plane.
     fn on_planes(&self, contact: &Contact<D>, state: &State<'_, D>, mut f: impl FnMut(usize, Push<D>, Vector<D>)) {
         for plane in &contact.planes {
             for i in (0..self.len()).filter(|i| self.is_on_surface(*i)) {
@@ -48,14 +48,14 @@ impl<const D: usize> Solid<D> {
         }
     }
 
-    /// Friction on a particle that is pressed with a force and slides.
+    /// Friction force on a particle with the contact force `pressed` and the sliding velocity `sliding`.
     fn friction(&self, i: usize, contact: &Contact<D>, pressed: f64, sliding: &Vector<D>) -> Vector<D> {
         let speed = sliding.norm();
         let slow = STICKS * self.material_of(i).pressure_wave_speed();
         *sliding * (-contact.friction * pressed / (speed * speed + slow * slow).sqrt())
     }
 
-    /// Calls `f(i, j, push)` for every pair of particles of different bodies that touch; the push is that on i.
+    /// Calls `f(i, j, push)` for every pair of particles of different bodies in contact; the push acts on particle i.
     fn between_bodies(&self, contact: &Contact<D>, state: &State<'_, D>, mut f: impl FnMut(usize, usize, Push<D>)) {
         let several = self.body.iter().any(|b| *b != self.body[0]);
         if !contact.bodies || !several {
@@ -84,7 +84,7 @@ impl<const D: usize> Solid<D> {
         }
     }
 
-    /// Adds the forces of contact.
+    /// Adds the contact forces.
     pub(super) fn add_contact(&self, state: &State<'_, D>, force: &mut [[f64; D]]) {
         let Some(contact) = &self.contact else { return };
         let mut add = |i: usize, push: &Vector<D>| (0..D).for_each(|a| force[i][a] += push[a]);
@@ -98,7 +98,7 @@ impl<const D: usize> Solid<D> {
         });
     }
 
-    /// Energy that contact gives back.
+    /// Elastic energy of contact.
     pub(super) fn contact_energy(&self, state: &State<'_, D>) -> f64 {
         let Some(contact) = &self.contact else { return 0.0 };
         let mut sum = 0.0;
@@ -107,7 +107,7 @@ impl<const D: usize> Solid<D> {
         sum
     }
 
-    /// Power that friction takes.
+    /// Power dissipated by friction.
     pub(super) fn rubbed(&self, state: &State<'_, D>) -> f64 {
         let Some(contact) = &self.contact else { return 0.0 };
         let mut sum = 0.0;

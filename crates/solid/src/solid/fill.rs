@@ -1,9 +1,9 @@
 //! Filling bodies with particles.
 //!
-//! Boxes, and quadrilaterals in the plane, are filled row by row, surfaces included. Any other shape gets particles on its surface
-//! first, one spacing apart, then a lattice inside, of squares in the plane and body-centred in space, whose simplices are never
-//! flat. Near the surface it is relaxed by repulsion; the surface and what is deeper stay, so that most particles have the
-//! neighbours of a lattice, whichever way the reach of a cloud cuts.
+//! Boxes, and quadrilaterals in 2-D, are filled with regular rows that include the surfaces. Any other shape first
+//! receives particles on its surface, one spacing apart, and then a lattice inside: a square lattice in 2-D and a
+//! body-centred cubic one in 3-D, whose simplices are never flat. Near the surface, the lattice is relaxed by
+//! repulsion; particles on the surface and deep inside stay. Most particles therefore have the neighbours of a lattice.
 use super::particles::{Facet, Fill};
 use super::weigh::{weigh_in_plane, weigh_in_space};
 use crate::cloud::grid::Grid;
@@ -11,36 +11,36 @@ use crate::geometry::Surface;
 use crate::math::Vector;
 use crate::math::parallel::sweep_each;
 
-/// Particles inside begin no nearer to the surface than this, in spacings.
+/// Minimum initial distance, in spacings, of inner particles from the surface.
 const CLEAR: f64 = 0.6;
-/// Particles deeper than this stay on the lattice, in spacings.
+/// Distance from the surface, in spacings, beyond which particles stay on the lattice.
 const DEEP: f64 = std::f64::consts::SQRT_2 + 0.6;
-/// Sweeps of the relaxation.
+/// Number of sweeps of the relaxation.
 const SWEEPS: usize = 40;
-/// Step of a sweep, in spacings.
+/// Step length of a sweep, in spacings.
 const STEP: f64 = 0.2;
-/// Reach of repulsion, in spacings.
+/// Range of the repulsion, in spacings.
 const REPULSION: f64 = 1.5;
 
-/// Rows of particles in a box or, in the plane, a quadrilateral.
+/// Regular rows of particles in a box or, in 2-D, a quadrilateral.
 #[derive(Clone, Debug)]
 pub struct Lattice<const D: usize> {
-    /// Its corners, those along the first axis first.
+    /// Corners of the shape; the first axis varies fastest.
     pub corners: Vec<Vector<D>>,
-    /// Particles along each axis, both ends included.
+    /// Number of particles along each axis, both ends included.
     pub counts: [usize; D],
-    /// Random shift of particles inside, in spacings.
+    /// Amplitude of the random displacement of inner particles, in spacings.
     pub jitter: f64,
 }
 
 impl<const D: usize> Lattice<D> {
-    /// Rows about `spacing` apart, at least two along each axis, an even count of steps nowhere asked for.
+    /// Rows with a distance of about `spacing`, at least two along each axis.
     pub fn with_spacing(corners: Vec<Vector<D>>, spacing: f64) -> Self {
         let counts = std::array::from_fn(|d| ((across(&corners, d) / spacing).round() as usize).max(1) + 1);
         Self { corners, counts, jitter: 0.0 }
     }
 
-    /// The particles.
+    /// Positions, volumes and surface of the particles.
     pub fn fill(&self) -> Fill<D> {
         let n: usize = self.counts.iter().product();
         let place = |k: usize| -> [usize; D] {
@@ -73,7 +73,7 @@ impl<const D: usize> Lattice<D> {
         surface_first(&fill)
     }
 
-    /// Neighbours of the particle at a place in the rows: all around it.
+    /// Neighbours of the particle at an index position: all adjacent ones, diagonals included.
     fn ring(&self, place: &[usize; D]) -> Vec<u32> {
         let mut ring = Vec::new();
         for step in 0..3usize.pow(D as u32) {
@@ -89,19 +89,19 @@ impl<const D: usize> Lattice<D> {
         ring
     }
 
-    /// Greatest distance of particles along the rows.
+    /// Greatest distance between adjacent particles along the rows.
     fn spacing(&self) -> f64 {
         (0..D).map(|d| across(&self.corners, d) / (self.counts[d] - 1) as f64).fold(0.0, f64::max)
     }
 
-    /// The point with these parts of the way along each axis.
+    /// The point at these fractions of the length along each axis.
     fn at(&self, part: [f64; D]) -> Vector<D> {
         let weight =
             |k: usize| -> f64 { (0..D).map(|d| if k >> d & 1 == 1 { part[d] } else { 1.0 - part[d] }).product() };
         (0..1usize << D).fold(Vector::ZERO, |x, k| x + self.corners[k] * weight(k))
     }
 
-    /// Volumes of the cells between the rows, a share to each corner; their sides on the surface.
+    /// Computes volumes and facets: each cell between the rows assigns shares of its volume to its corners.
     fn weigh(&self, fill: &mut Fill<D>) {
         let cells: [usize; D] = self.counts.map(|c| c - 1);
         for cell in 0..cells.iter().product::<usize>() {
@@ -133,14 +133,15 @@ impl<const D: usize> Lattice<D> {
     }
 }
 
-/// Greatest length of the rows of a box along axis `d`, seen along their mean: sides that slant to and fro count by what is between them.
+/// Greatest length of the rows of a box along axis `d`, projected on their mean direction, so that slanted sides do not
+/// count in full.
 fn across<const D: usize>(corners: &[Vector<D>], d: usize) -> f64 {
     let edges = || (0..1usize << D).filter(|k| k >> d & 1 == 0).map(|k| corners[k | 1 << d] - corners[k]);
     let along = edges().fold(Vector::ZERO, |sum, e| sum + e).unit();
     edges().map(|e| e.dot(&along)).fold(0.0, f64::max)
 }
 
-/// Corners of a side of a cell, in order seen from outside.
+/// Indices of the corners of a face of a cell, in order when viewed from outside.
 fn side_of_cell<const D: usize>(d: usize, end: usize) -> Vec<usize> {
     let all: Vec<usize> = match D {
         2 => match d {
@@ -155,7 +156,7 @@ fn side_of_cell<const D: usize>(d: usize, end: usize) -> Vec<usize> {
     if end == 1 { all } else { all.into_iter().rev().collect() }
 }
 
-/// Area vector of a side with corners in order seen from outside.
+/// Area vector of a face with corners in order when viewed from outside.
 fn area_of_side<const D: usize>(at: &[Vector<D>]) -> Vector<D> {
     if D == 2 {
         let along = at[1] - at[0];
@@ -168,7 +169,7 @@ fn cross<const D: usize>(a: &Vector<D>, b: &Vector<D>) -> Vector<D> {
     Vector::from_fn(|d| a[(d + 1) % 3] * b[(d + 2) % 3] - a[(d + 2) % 3] * b[(d + 1) % 3])
 }
 
-/// What the shares of a quadrilateral leave of its first moment, a quarter of it: a part for each corner.
+/// First moment of a quadrilateral that its shares miss, divided by four: one part for each corner.
 fn moment_left<const D: usize>(corners: &[Vector<D>], shares: &[f64]) -> Vector<D> {
     let turn = |a: Vector<D>, b: Vector<D>| a[0] * b[1] - a[1] * b[0];
     let of = |[a, b, c]: [usize; 3]| {
@@ -179,7 +180,7 @@ fn moment_left<const D: usize>(corners: &[Vector<D>], shares: &[f64]) -> Vector<
     corners.iter().zip(shares).fold(whole, |left, (x, share)| left - *x * *share) * 0.25
 }
 
-/// Shares of the corners in the volume of a cell: a quadrilateral in the plane, a box in space.
+/// Fractions of the volume of a cell that belong to its corners; a quadrilateral in 2-D, a box in 3-D.
 fn shares_of_cell<const D: usize>(corners: &[Vector<D>]) -> Vec<f64> {
     if D != 2 {
         let sides: Vec<Vector<D>> = (0..D).map(|d| corners[1 << d] - corners[0]).collect();
@@ -197,7 +198,7 @@ fn shares_of_cell<const D: usize>(corners: &[Vector<D>]) -> Vec<f64> {
     volumes
 }
 
-/// Particles in any shape: in the plane around closed outlines, in space inside closed surfaces.
+/// Fills any shape with particles: inside closed outlines in 2-D, inside closed surfaces in 3-D.
 pub fn relaxed<const D: usize>(surface: &Surface<D>, spacing: f64) -> Fill<D> {
     let (skin, outline) =
         if D == 2 { along_outline(surface, spacing) } else { (on_surface(surface, spacing), Vec::new()) };
@@ -209,7 +210,7 @@ pub fn relaxed<const D: usize>(surface: &Surface<D>, spacing: f64) -> Fill<D> {
     kept(weighed((&x, n), &outline, spacing, &|p| surface.inside(p)))
 }
 
-/// Volumes and surface of particles by the simplices between them whose middle is `inside`.
+/// Volumes and surface of particles from the simplices between them whose centre is `inside`.
 fn weighed<const D: usize>(
     (x, skin): (&[Vector<D>], usize),
     outline: &[[u32; 2]],
@@ -229,7 +230,7 @@ fn weighed<const D: usize>(
     }
 }
 
-/// The same in as many dimensions as the caller has.
+/// Converts a fill of dimension `E` to the equal dimension `D` of the caller.
 fn raised<const E: usize, const D: usize>(fill: Fill<E>) -> Fill<D> {
     let raised = |v: &Vector<E>| Vector::from_fn(|d| v[d]);
     let facets = fill.facets.iter().map(|f| Facet::new(f.corners(), raised(&f.area))).collect();
@@ -245,13 +246,13 @@ fn raised<const E: usize, const D: usize>(fill: Fill<E>) -> Fill<D> {
     }
 }
 
-/// Without particles that hold nothing.
+/// The fill without particles of zero volume.
 fn kept<const D: usize>(fill: Fill<D>) -> Fill<D> {
     let order: Vec<usize> = (0..fill.x.len()).filter(|i| fill.volume[*i] > 0.0).collect();
     fill.taken(&order)
 }
 
-/// Particles on the surface before the others.
+/// The fill with the surface particles first.
 fn surface_first<const D: usize>(fill: &Fill<D>) -> Fill<D> {
     let mut on = vec![false; fill.x.len()];
     fill.facets.iter().flat_map(|f| f.corners()).for_each(|i| on[*i as usize] = true);
@@ -259,7 +260,7 @@ fn surface_first<const D: usize>(fill: &Fill<D>) -> Fill<D> {
     fill.taken(&[skin, inner].concat())
 }
 
-/// Particles along the outlines, corners kept, and the sides between them.
+/// Particles along the outlines, corners included, and the sides between them.
 fn along_outline<const D: usize>(surface: &Surface<D>, spacing: f64) -> (Vec<Vector<D>>, Vec<[u32; 2]>) {
     let (mut x, mut sides): (Vec<Vector<D>>, Vec<[u32; 2]>) = (Vec::new(), Vec::new());
     let mut grid = Grid::new(spacing);
@@ -297,7 +298,7 @@ fn along_outline<const D: usize>(surface: &Surface<D>, spacing: f64) -> (Vec<Vec
     (x, sides)
 }
 
-/// Particles on a surface in space: along sharp edges first, then wherever there is room, spread out evenly.
+/// Particles on a surface in 3-D: first along sharp edges, then evenly spread over the rest.
 fn on_surface<const D: usize>(surface: &Surface<D>, spacing: f64) -> Vec<Vector<D>> {
     let mut x: Vec<Vector<D>> = Vec::new();
     let mut grid = Grid::new(spacing);
@@ -320,7 +321,7 @@ fn on_surface<const D: usize>(surface: &Surface<D>, spacing: f64) -> Vec<Vector<
     x
 }
 
-/// Points at which three sharp edges or more meet.
+/// Points at which three or more sharp edges meet.
 fn corners<const D: usize>(surface: &Surface<D>) -> Vec<Vector<D>> {
     let ends: Vec<Vector<D>> = surface.sharp.iter().filter(|e| e.turn.abs() > 0.6).flat_map(|e| e.ends).collect();
     let size = surface.bounds().extent().max_abs() * 1e-9;
@@ -344,7 +345,7 @@ fn corners<const D: usize>(surface: &Surface<D>) -> Vec<Vector<D>> {
     ends.iter().enumerate().filter_map(is_corner).collect()
 }
 
-/// Spreads the particles of a surface after the first `fixed` ones.
+/// Spreads the particles of a surface evenly, except the first `fixed` ones.
 fn spread<const D: usize>(x: &mut [Vector<D>], fixed: usize, surface: &Surface<D>, spacing: f64) {
     for _ in 0..SWEEPS {
         let mut next = x.to_vec();
@@ -361,7 +362,7 @@ fn spread<const D: usize>(x: &mut [Vector<D>], fixed: usize, surface: &Surface<D
     }
 }
 
-/// What neighbours push a particle with.
+/// Repulsive displacement of a particle by its neighbours.
 fn repulsion<'a, const D: usize>(x: &'a [Vector<D>], spacing: f64) -> impl Fn(usize) -> Vector<D> + Sync + 'a {
     let reach = REPULSION * spacing;
     let mut grid = Grid::new(reach);
@@ -382,11 +383,11 @@ fn repulsion<'a, const D: usize>(x: &'a [Vector<D>], spacing: f64) -> impl Fn(us
     }
 }
 
-/// The lattice inside.
+/// Lattice points inside the body.
 fn inside<const D: usize>(surface: &Surface<D>, spacing: f64) -> Vec<Vector<D>> {
     let bounds = surface.bounds();
     let extent = bounds.extent();
-    // in the plane squares, in space cubes with a particle in the middle of each as well
+    // 2-D: squares; 3-D: cubes with an additional particle at the centre of each
     let (step, halves) = if D == 2 { (spacing, 1) } else { (2.0 / 3f64.sqrt() * spacing, 2) };
     let steps = [step; D];
     let counts = std::array::from_fn::<_, D, _>(|d| (extent[d] / steps[d]).ceil() as usize + 1);
@@ -407,7 +408,7 @@ fn inside<const D: usize>(surface: &Surface<D>, spacing: f64) -> Vec<Vector<D>> 
     rows.concat()
 }
 
-/// Moves particles after the first `fixed` ones apart.
+/// Relaxes the positions of all particles except the first `fixed` ones.
 fn relax<const D: usize>(x: &mut [Vector<D>], fixed: usize, surface: &Surface<D>, spacing: f64) {
     let near = |x: &Vector<D>| surface.nearest(x, DEEP * spacing).is_some();
     let moves: Vec<bool> = x.iter().enumerate().map(|(i, x)| i >= fixed && near(x)).collect();
@@ -420,7 +421,7 @@ fn relax<const D: usize>(x: &mut [Vector<D>], fixed: usize, surface: &Surface<D>
                 return x[i];
             }
             let moved = x[i] + push(i) * step;
-            // nobody leaves, or comes near the surface
+            // no particle leaves the body or comes near the surface
             if surface.inside(&moved) && surface.nearest(&moved, 0.4 * spacing).is_none() { moved } else { x[i] }
         });
         drop(push);
@@ -428,7 +429,7 @@ fn relax<const D: usize>(x: &mut [Vector<D>], fixed: usize, surface: &Surface<D>
     }
 }
 
-/// Plain numbers without a pattern, from -1/2 to 1/2 (Marsaglia 2003, doi:10.18637/jss.v008.i14).
+/// Pseudo-random numbers from −1/2 to 1/2 (xorshift: Marsaglia 2003, doi:10.18637/jss.v008.i14).
 struct Noise(u64);
 
 impl Noise {

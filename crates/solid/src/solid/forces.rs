@@ -1,26 +1,29 @@
-//! Forces between the particles of a structure.
+//! Internal and external forces on the particles of a solid.
 //!
-//! The energy W(u) = Σ V ψ(F) + E_s with F_i = 1 + Σ_j (u_j − u_i) ⊗ g_ij has the forces −∂W/∂u,
+//! The energy W(u) = Σ V ψ(F) + E_s with F_i = 1 + Σ_j (u_j − u_i) ⊗ g_ij yields the forces −∂W/∂u,
 //!
 //! f_i = Σ_j (P_i V_i g_ij − P_j V_j g_ji) + Σ_j w [(c_i + c_j)(u_j − u_i) − (c_i A_i + c_j A_j) d_ij],
 //!
-//! where P is the first stress of Piola and Kirchhoff. Forces on a pair are opposite, and W knows no rotation, so that momentum and
-//! angular momentum stay. The second sum comes from E_s = ½ Σ_i c_i Σ_j w |u_j − u_i − A_i d_ij|², what the plain fits
-//! A_i of the displacement gradient leave, c = α μ V D/n: it holds the modes that fits do not see, and is nothing for
-//! uniform deformation. As A_i makes the inner sum least, its change with A_i is no force. The same sum over velocities with
-//! c = β ρ c_p h V D/n damps these modes. Where a material has flowed plastically, the stiffness is a part s = σ_y/(σ_y + 3 μ ε_p) of
-//! it, and the damping the part √s.
+//! where P is the first Piola-Kirchhoff stress. The forces of a pair are opposite, and W is invariant under rotation,
+//! so that momentum and angular momentum are conserved. The second sum comes from the stabilisation energy E_s = ½ Σ_i
+//! c_i Σ_j w |u_j − u_i − A_i d_ij|², the residuals of the uncorrected fits A_i of the displacement gradient, with c =
+//! α μ V D/n. It stabilises the modes that the fits do not represent and vanishes for uniform deformation. Because A_i
+//! minimises the inner sum, its variation contributes no force. The same sum over velocities with c = β ρ c_p h V D/n
+//! damps these modes. Where a material has yielded, the stabilising stiffness is multiplied by s = σ_y/(σ_y + 3 μ ε_p),
+//! and the damping by √s.
 //!
-//! Damping in proportion to stiffness is that of Kelvin and Voigt in the axes of the body at rest: the second stress of Piola and
-//! Kirchhoff gains β C₀ : Ė with the rate of Green's strain and the elastic moduli C₀ at rest, and the residuals of velocity
-//! c = β α μ V D/n. About the body at rest this is Rayleigh's −β K v. The stress is symmetric, so that angular momentum stays, does nothing
-//! to a motion without strain, and takes β Ė : C₀ : Ė ≥ 0 (Holzapfel 2000, *Nonlinear Solid Mechanics*, section 6.10; Bathe 2014,
-//! *Finite Element Procedures*, section 9.3.3). What the residuals of velocity damp brakes zigzag displacements that turn, too.
+//! Damping proportional to stiffness is Kelvin-Voigt damping in the undeformed configuration: the second
+//! Piola-Kirchhoff stress gains β C₀ : Ė with the rate of the Green-Lagrange strain E and the initial elastic moduli
+//! C₀, and the velocity residuals gain c = β α μ V D/n. For small vibrations about the undeformed state this is
+//! Rayleigh's −β K v. The stress is symmetric, so that angular momentum is conserved; it does not affect motions
+//! without strain, and dissipates β Ė : C₀ : Ė ≥ 0 (Holzapfel 2000, *Nonlinear Solid Mechanics*, section 6.10; Bathe
+//! 2014, *Finite Element Procedures*, section 9.3.3). The damping of the velocity residuals also resists the rotation
+//! of zigzag displacements.
 use multiversion::multiversion;
 
 use super::axis::{HOOP, HoopTangent, axis_tangent};
 use super::body::{Action, Plane, Solid};
-use super::pairs::{self, Pulling, Stressed, gradients, plain_gradient};
+use super::pairs::{self, ParticleStress, StabilisedFields, gradients, plain_gradient};
 use super::particles::Edge;
 use super::rows::{Columns, columns, row};
 use crate::math::Vector;
@@ -32,26 +35,26 @@ use crate::physics::solid::tensor::{determinant, product_transposed, times};
 use crate::physics::solid::{Law, MOST_HISTORY, Material, Moduli, Response, Tensor, plane_stress};
 use crate::system::Fault;
 
-/// A square matrix: rows are components, columns axes of the body at rest.
+/// A square matrix: the rows are components, the columns axes of the undeformed body.
 pub type Matrix<const D: usize> = [[f64; D]; D];
 
-/// Energy of a structure and where it is.
+/// Energies of a solid [J]; for 2-D bodies per unit of thickness.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Energy {
-    /// ½ Σ m v².
+    /// Kinetic energy ½ Σ m v².
     pub kinetic: f64,
-    /// Σ V ψ, what materials give back.
+    /// Elastic energy Σ V ψ of the materials.
     pub strain: f64,
-    /// What stabilisation holds.
+    /// Energy of the stabilisation.
     pub stabilisation: f64,
-    /// What contact holds.
+    /// Elastic energy of contact.
     pub contact: f64,
-    /// What materials have lost so far.
+    /// Energy dissipated by the materials so far.
     pub dissipated: f64,
 }
 
 impl Energy {
-    /// That of `thickness` units of length across the plane.
+    /// All energies multiplied by `thickness`.
     pub fn times(&self, thickness: f64) -> Self {
         Self {
             kinetic: self.kinetic * thickness,
@@ -63,36 +66,36 @@ impl Energy {
     }
 }
 
-/// Storage of an evaluation.
+/// Work arrays for the evaluation of forces.
 pub struct Work<const D: usize> {
-    /// Stresses.
-    pub stressed: Vec<Stressed<D>>,
+    /// Stresses and stabilisation coefficients of all particles.
+    pub stressed: Vec<ParticleStress<D>>,
 }
 
-/// Tangents ∂P/∂F of all particles at a state: `all[i][a][b]` is what the stress gains with component ab of F.
+/// Tangents of all particles at a state: `all[i][a][b]` is the derivative ∂P/∂F_ab at particle i.
 pub struct Tangents<const D: usize> {
     pub(super) all: Vec<[[Matrix<D>; D]; D]>,
     pub(super) stiff: Vec<f64>,
-    /// Hoop parts; empty but about an axis of revolution.
+    /// Hoop terms; empty unless the solid is a body of revolution.
     pub(super) hoop: Vec<HoopTangent<D>>,
 }
 
-/// How a structure moves at a moment.
+/// The state of motion of a solid at one time.
 #[derive(Clone, Copy, Debug)]
 pub struct State<'a, const D: usize> {
-    /// Time.
+    /// Time [s].
     pub time: f64,
-    /// Time since the history was what it is; 0 for an instant.
+    /// Time since `history` was valid [s]; 0 for an instantaneous response.
     pub step: f64,
     /// Displacement of each particle.
     pub displacement: &'a [[f64; D]],
     /// Velocity of each particle.
     pub velocity: &'a [[f64; D]],
-    /// History of each particle.
+    /// History variables of all particles.
     pub history: &'a [f64],
 }
 
-/// The deformation gradient in space of a displacement gradient; nothing happens across a plane body.
+/// The 3-D deformation gradient of a displacement gradient; in 2-D without strain normal to the plane.
 #[inline(always)]
 fn deformation<const D: usize>(gradient: &Columns<D>) -> Tensor {
     let mut f = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
@@ -104,7 +107,7 @@ fn deformation<const D: usize>(gradient: &Columns<D>) -> Tensor {
     f
 }
 
-/// The same with the hoop strain that stands in the gradient of a body of revolution.
+/// The 3-D deformation gradient with the hoop strain, for a body of revolution.
 #[inline(always)]
 fn deformation_with_hoop<const D: usize>(gradient: &Columns<D>) -> Tensor {
     let mut f = deformation(gradient);
@@ -115,24 +118,24 @@ fn deformation_with_hoop<const D: usize>(gradient: &Columns<D>) -> Tensor {
 }
 
 impl<const D: usize> Solid<D> {
-    /// Fresh storage.
+    /// New work arrays.
     pub fn work(&self) -> Work<D> {
-        Work { stressed: vec![Stressed::ZERO; self.len()] }
+        Work { stressed: vec![ParticleStress::ZERO; self.len()] }
     }
 
-    /// Storage for tangents.
+    /// New arrays for tangents.
     pub fn tangents(&self) -> Tangents<D> {
         let (n, round) = (self.len(), if self.is_round() { self.len() } else { 0 });
         Tangents { all: vec![[[[[0.0; D]; D]; D]; D]; n], stiff: vec![0.0; n], hoop: vec![HoopTangent::ZERO; round] }
     }
 
-    /// History of a particle before.
+    /// History variables of particle `i`.
     #[inline(always)]
     fn history_of<'a>(&self, history: &'a [f64], i: usize) -> &'a [f64] {
         &history[i * self.width..(i + 1) * self.width]
     }
 
-    /// What a material answers; writes the new history.
+    /// Response of a material to the deformation gradient `f`; writes the new history variables.
     #[inline(always)]
     fn respond(&self, material: &Material, f: &Tensor, (old, step): (&[f64], f64), new: &mut [f64]) -> Response<f64> {
         let own = material.history_len();
@@ -147,7 +150,7 @@ impl<const D: usize> Solid<D> {
         }
     }
 
-    /// Stresses in a state, and the history that they leave in `after`.
+    /// Computes the stresses of a state into `work` and the resulting history variables into `after`.
     pub fn stress(&self, state: &State<'_, D>, work: &mut Work<D>, after: &mut [f64]) {
         let parts = parts(self.len(), CHUNK);
         sweep_two_parts((&parts, 1, &mut work.stressed), (&parts, self.width, after), &|k, stressed, after| {
@@ -155,18 +158,18 @@ impl<const D: usize> Solid<D> {
         });
     }
 
-    /// Stress in one particle.
+    /// Stress of particle `i`.
     #[inline(always)]
-    fn stress_of(&self, i: usize, state: &State<'_, D>, new: &mut [f64]) -> Stressed<D> {
+    fn stress_of(&self, i: usize, state: &State<'_, D>, new: &mut [f64]) -> ParticleStress<D> {
         let (gradient, plain) = gradients(self, i, |j| row(&state.displacement[j]));
         match self.is_round() {
             true => self.stress_of_ring(i, state, new, (gradient, plain)),
-            // that nothing happens across a plane body saves a fifth of the time
+            // the assumption of plane strain here saves a fifth of the time
             false => self.stress_at(i, state, new, (&deformation(&gradient), plain)),
         }
     }
 
-    /// The same in a body of revolution.
+    /// Stress of particle `i` of a body of revolution.
     #[inline(never)]
     fn stress_of_ring(
         &self,
@@ -174,12 +177,12 @@ impl<const D: usize> Solid<D> {
         state: &State<'_, D>,
         new: &mut [f64],
         (mut gradient, plain): (Columns<D>, Columns<D>),
-    ) -> Stressed<D> {
+    ) -> ParticleStress<D> {
         self.put_hoop(i, &mut gradient, state.displacement[i][0]);
         self.stress_at(i, state, new, (&deformation_with_hoop(&gradient), plain))
     }
 
-    /// Stress in a particle with the deformation gradient `f`, and the plain gradient of its displacement.
+    /// Stress of particle `i` with the deformation gradient `f` and the uncorrected displacement gradient `plain`.
     #[inline(always)]
     fn stress_at(
         &self,
@@ -187,7 +190,7 @@ impl<const D: usize> Solid<D> {
         state: &State<'_, D>,
         new: &mut [f64],
         (f, plain): (&Tensor, Columns<D>),
-    ) -> Stressed<D> {
+    ) -> ParticleStress<D> {
         let (material, old) = (self.material_of(i), self.history_of(state.history, i));
         let elastic = if self.width == 0 { material.elastic_stress(f) } else { None };
         let stress = elastic.unwrap_or_else(|| {
@@ -210,17 +213,18 @@ impl<const D: usize> Solid<D> {
         let hoop = stress[2][2];
         let mut stress: Columns<D> = std::array::from_fn(|b| row::<D>(&std::array::from_fn(|a| stress[a][b])));
         self.put_hoop_stress(i, &mut stress, hoop);
-        Stressed { stress, smooth, stiff, viscous, volume: determinant(f) }
+        ParticleStress { stress, smooth, stiff, viscous, volume: determinant(f) }
     }
 
-    /// Adds the stress of damping in proportion to stiffness at a particle; out of the way of those without it.
+    /// Adds the stress of damping proportional to stiffness; a function of its own, so that particles without damping
+    /// stay fast.
     #[inline(never)]
     fn add_damping(&self, i: usize, v: &[[f64; D]], f: &Tensor, stress: &mut Tensor) {
         let damped = self.damping_stress(self.material_of(i), f, &self.rate_of(i, v).0);
         (0..3).for_each(|a| (0..3).for_each(|b| stress[a][b] += damped[a][b]));
     }
 
-    /// The gradients of velocities around a particle: consistent, in space, where that is asked for, and of the plain fit.
+    /// Velocity gradients at particle `i`: the consistent one in 3-D where it is needed, and the uncorrected fit.
     fn rate_of(&self, i: usize, v: &[[f64; D]]) -> (Tensor, Columns<D>) {
         if self.damping.stiffness == 0.0 {
             return ([[0.0; 3]; 3], plain_gradient(self, i, |j| row(&v[j])));
@@ -232,15 +236,15 @@ impl<const D: usize> Solid<D> {
         (rate, plain)
     }
 
-    /// The first stress of Piola and Kirchhoff of damping in proportion to stiffness, F β C₀ : Ė, where the displacement gradient
-    /// changes at `rate`; materials of small strains take F = 1.
+    /// First Piola-Kirchhoff stress of damping proportional to stiffness, F β C₀ : Ė, for the rate `rate` of the
+    /// displacement gradient; F = 1 for materials of small strain.
     fn damping_stress(&self, material: &Material, f: &Tensor, rate: &Tensor) -> Tensor {
         let small = matches!(material.law, Law::Linear);
         let f = |a: usize, b: usize| if small { f64::from(u8::from(a == b)) } else { f[a][b] };
         let Moduli { shear, bulk } = material.moduli;
         let lame = bulk - 2.0 / 3.0 * shear;
         let lame = if self.plane == Plane::Stress { 2.0 * lame * shear / (lame + 2.0 * shear) } else { lame };
-        // nothing strains across a plane body
+        // no strain rate normal to a plane body
         let n = if self.is_round() { 3 } else { D };
         let twice = |a: usize, b: usize| (0..n).map(|k| f(k, a) * rate[k][b] + rate[k][a] * f(k, b)).sum::<f64>();
         let mut second = [[0.0; 3]; 3];
@@ -257,17 +261,18 @@ impl<const D: usize> Solid<D> {
         std::array::from_fn(|a| std::array::from_fn(|b| (0..n).map(|k| f(a, k) * second[k][b]).sum()))
     }
 
-    /// c of the residuals of displacement and of velocity: what has yielded is held and damped less. The damping goes with the root of
-    /// the stiffness that it damps; the full one would do much of the work in what flows, the more the larger the spacing.
+    /// Coefficients c of the displacement and velocity residuals. Both are reduced where the material has yielded. The
+    /// damping is multiplied by the root of the factor of the stiffness: undiminished damping would do much of the work
+    /// in plastic flow, the more the larger the spacing.
     #[inline(always)]
     fn holding(&self, i: usize, material: &Material, history: &[f64]) -> [f64; 2] {
-        /// What is left where nothing is stiff any more.
-        const LEAST: f64 = 0.002;
+        /// Smallest factor on the stabilising stiffness.
+        const MIN_FACTOR: f64 = 0.002;
         let shear = material.moduli.shear;
         let soft = match material.yield_stress() {
             Some(yields) => {
                 let strained = material.plastic_strain(&history[..material.history_len()]);
-                yields / (yields + 3.0 * shear * strained) + LEAST / self.damping.stabilisation.max(LEAST)
+                yields / (yields + 3.0 * shear * strained) + MIN_FACTOR / self.damping.stabilisation.max(MIN_FACTOR)
             }
             None => 1.0,
         };
@@ -275,21 +280,21 @@ impl<const D: usize> Solid<D> {
         [self.damping.stabilisation * soft * shear * self.weight[i], self.viscous[i] * soft.sqrt()]
     }
 
-    /// The same in a state.
+    /// These coefficients in a given state.
     fn holding_in(&self, i: usize, state: &State<'_, D>) -> [f64; 2] {
         self.holding(i, self.material_of(i), self.history_of(state.history, i))
     }
 
-    /// True where forces depend on how velocities change from place to place.
+    /// True when forces depend on the velocity gradient.
     pub(super) fn is_viscous(&self) -> bool {
         self.damping.viscosity > 0.0 || self.damping.stiffness > 0.0
     }
 
-    /// Forces on all particles: of stresses in `work`, stabilisation, gravity and loads.
+    /// Forces on all particles due to the stresses in `work`, stabilisation, contact, gravity and loads.
     pub fn forces(&self, state: &State<'_, D>, work: &Work<D>, force: &mut [[f64; D]]) {
         let gravity = self.gravity * self.part(state.time);
         let velocity = self.is_viscous().then_some(state.velocity);
-        self.internal(Pulling { displacement: state.displacement, velocity }, work, force);
+        self.internal(StabilisedFields { displacement: state.displacement, velocity }, work, force);
         sweep_slots(force, |i, f| (0..D).for_each(|a| f[a] += gravity[a] * self.mass[i]));
         self.add_loads(state, force);
         self.add_contact(state, force);
@@ -301,8 +306,8 @@ impl<const D: usize> Solid<D> {
         }
     }
 
-    /// Forces of neighbours on all particles.
-    fn internal(&self, pulling: Pulling<'_, D>, work: &Work<D>, force: &mut [[f64; D]]) {
+    /// Forces of the neighbours on all particles.
+    fn internal(&self, pulling: StabilisedFields<'_, D>, work: &Work<D>, force: &mut [[f64; D]]) {
         let parts = parts(self.len(), CHUNK);
         sweep_parts(&parts, 1, force, &|k, force| {
             pairs::internal(self, parts[k].start, pulling, &work.stressed, force);
@@ -312,7 +317,7 @@ impl<const D: usize> Solid<D> {
         }
     }
 
-    /// Loads on the surface.
+    /// Adds the loads on the surface.
     fn add_loads(&self, state: &State<'_, D>, force: &mut [[f64; D]]) {
         for load in &self.loads {
             let factor = (load.history)(state.time) * self.part(state.time);
@@ -327,7 +332,7 @@ impl<const D: usize> Solid<D> {
         }
     }
 
-    /// What becomes of an area at rest where the body is deformed, J F⁻ᵀ A (Nanson).
+    /// Area vector in the deformed state of the undeformed area vector `area` at particle `i`: J F⁻ᵀ A (Nanson).
     pub fn carried(&self, i: usize, u: &[[f64; D]], area: &Vector<D>) -> Vector<D> {
         let f = self.deformation(i, u);
         let cofactor = |a: usize, b: usize| {
@@ -338,8 +343,8 @@ impl<const D: usize> Solid<D> {
         Vector::from_fn(|a| (0..D).map(|b| cofactor(a, b) * area[b]).sum())
     }
 
-    /// What [`Self::stiffness`] needs of a state, the tangent of every particle: `elastic` times that of the displacement and `viscous`
-    /// times that of the velocity, where damping in proportion to mass is left out.
+    /// Computes the tangents that [`Self::stiffness`] uses: `elastic` times the tangent for the displacement plus
+    /// `viscous` times that for the velocity, without damping proportional to mass.
     pub fn linearise(&self, state: &State<'_, D>, parts: [f64; 2], tangents: &mut Tangents<D>) {
         let [elastic, viscous] = parts;
         sweep_slots(&mut tangents.all, |i, t| {
@@ -367,7 +372,8 @@ impl<const D: usize> Solid<D> {
         });
     }
 
-    /// K w, what forces lose when particles are displaced by `w`; loads that follow the surface are left out.
+    /// The product K w: minus the change of the forces due to the displacements `w`; the change of follower loads is
+    /// neglected.
     pub fn stiffness(&self, tangents: &Tangents<D>, w: &[[f64; D]], work: &mut Work<D>, out: &mut [[f64; D]]) {
         sweep(&mut work.stressed, |i| {
             let (mut change, plain) = gradients(self, i, |j| row(&w[j]));
@@ -382,14 +388,14 @@ impl<const D: usize> Solid<D> {
                 hoop.add_to(&mut stress, &change);
             }
             let smooth = plain.map(|column| column.map(|a| a * stiff));
-            Stressed { stress, smooth, stiff, viscous: 0.0, volume: 1.0 }
+            ParticleStress { stress, smooth, stiff, viscous: 0.0, volume: 1.0 }
         });
-        self.internal(Pulling { displacement: w, velocity: None }, work, out);
+        self.internal(StabilisedFields { displacement: w, velocity: None }, work, out);
         sweep_slots(out, |_, f| *f = f.map(|f| -f));
     }
 
-    /// Change of the stress of a particle with one component of its deformation gradient: `elastic` times that of the material and
-    /// `viscous` times that of damping.
+    /// Derivative of the stress of a particle with respect to one component of its deformation gradient: `elastic`
+    /// times that of the material plus `viscous` times that of the damping.
     fn tangent(
         &self,
         i: usize,
@@ -420,20 +426,20 @@ impl<const D: usize> Solid<D> {
         change
     }
 
-    /// Forces from outside: gravity and loads.
+    /// Sets `force` to the external forces: gravity and loads.
     pub fn outside(&self, state: &State<'_, D>, force: &mut [[f64; D]]) {
         let gravity = self.gravity * self.part(state.time);
         sweep(force, |i| (gravity * self.mass[i]).0);
         self.add_loads(state, force);
     }
 
-    /// The same with all of what acts in the end, where it grows.
+    /// Sets `force` to the external forces at full load, where they grow with time.
     pub fn all_outside(&self, state: &State<'_, D>, force: &mut [[f64; D]]) {
         let time = if self.ramped { 1.0 } else { state.time };
         self.outside(&State { time, ..*state }, force);
     }
 
-    /// Power that damping takes in a state.
+    /// Power dissipated by damping in a state [W].
     pub fn damped(&self, state: &State<'_, D>) -> f64 {
         let v = state.velocity;
         let slowed = sum(self.len(), |i| self.damping.mass * self.mass[i] * Vector(v[i]).norm_squared());
@@ -458,7 +464,7 @@ impl<const D: usize> Solid<D> {
             })
     }
 
-    /// w |q_j − q_i − A d|² of a pair.
+    /// Weighted square of the residual of a pair, w |q_j − q_i − A d|².
     fn left(&self, i: usize, e: &Edge<D>, q: &[[f64; D]], plain: &Columns<D>) -> f64 {
         let j = e.other as usize;
         let d = self.particles.x[j] - self.particles.x[i];
@@ -488,7 +494,7 @@ impl<const D: usize> Solid<D> {
         Energy { kinetic, strain, stabilisation, contact: self.contact_energy(state), dissipated }
     }
 
-    /// Cauchy's stress at a particle.
+    /// Cauchy stress at particle `i` [Pa].
     pub fn cauchy(&self, i: usize, state: &State<'_, D>) -> Tensor {
         let mut f = self.deformation(i, state.displacement);
         let old = self.history_of(state.history, i);
@@ -501,53 +507,56 @@ impl<const D: usize> Solid<D> {
         product_transposed(&stress, &f).map(|row| row.map(|s| s * size))
     }
 
-    /// What the material of a particle remembers.
+    /// History variables of the material of particle `i`.
     pub fn memory<'a>(&self, i: usize, history: &'a [f64]) -> &'a [f64] {
         &self.history_of(history, i)[..self.material_of(i).history_len()]
     }
 
-    /// Deformation gradient at a particle, in space.
+    /// 3-D deformation gradient at particle `i`.
     pub fn deformation(&self, i: usize, u: &[[f64; D]]) -> Tensor {
         let (mut gradient, _) = gradients(self, i, |j| row(&u[j]));
         self.put_hoop(i, &mut gradient, u[i][0]);
         deformation_with_hoop(&gradient)
     }
 
-    /// Refuses a state in which a particle is nowhere or turned inside out.
+    /// Rejects a state in which a displacement is not finite or a particle is inverted.
     pub fn check(&self, displacement: &[[f64; D]]) -> Result<(), Fault> {
         self.check_volumes(displacement, |i| determinant(&self.deformation(i, displacement)))
     }
 
-    /// The same where the stresses in `work` are those of the state.
+    /// The same check where the stresses in `work` belong to the state, which saves their volumes from being
+    /// recomputed.
     pub fn check_stressed(&self, displacement: &[[f64; D]], work: &Work<D>) -> Result<(), Fault> {
         self.check_volumes(displacement, |i| work.stressed[i].volume)
     }
 
     fn check_volumes(&self, displacement: &[[f64; D]], kept: impl Fn(usize) -> f64 + Sync) -> Result<(), Fault> {
-        /// Least part of its volume that a particle may keep.
-        const LEAST: f64 = 0.05;
-        let Some(i) = first(self.len(), |i| !(kept(i) > LEAST)) else { return Ok(()) };
+        /// Smallest permitted volume ratio of a particle.
+        const MIN_VOLUME_RATIO: f64 = 0.05;
+        let Some(i) = first(self.len(), |i| !(kept(i) > MIN_VOLUME_RATIO)) else { return Ok(()) };
         let reason = match kept(i) {
             j if j.is_finite() => {
-                format!("a particle of the solid keeps {j:.3} of its volume; at least {LEAST} is needed")
+                format!(
+                    "a particle of the solid is compressed to {j:.3} of its volume; the minimum is {MIN_VOLUME_RATIO}"
+                )
             }
-            _ => "a particle of the solid is nowhere: its displacement is no number".to_owned(),
+            _ => "the displacement of a particle of the solid is not a finite number".to_owned(),
         };
         let place = (0..D).map(|a| self.particles.x[i][a] + displacement[i][a]).collect();
         Err(Fault { particle: i, place, reason })
     }
 
-    /// The longest stable step of symplectic marching: that of the body at rest, less where it is compressed.
+    /// Longest stable step of explicit integration [s]: that of the undeformed solid, reduced where it is compressed.
     pub fn stable_step(&self, u: &[[f64; D]]) -> f64 {
         self.step_factors()[0] / self.fastest(u)
     }
 
-    /// The same if nothing were damped.
+    /// Longest stable step without damping [s].
     pub fn undamped_step(&self, u: &[[f64; D]]) -> f64 {
         self.step_factors()[1] / self.fastest(u)
     }
 
-    /// The most distances of particles that a wave passes in a unit of time.
+    /// Largest number of particle distances that a wave travels per unit of time.
     fn fastest(&self, u: &[[f64; D]]) -> f64 {
         maximum(self.len(), |i| {
             let speed = self.material_of(i).pressure_wave_speed();
@@ -556,25 +565,26 @@ impl<const D: usize> Solid<D> {
     }
 }
 
-/// The components of a tensor in the plane, or all in space.
+/// The components of a tensor in the plane, or all of them in 3-D.
 fn in_plane<const D: usize>(t: &Tensor) -> Matrix<D> {
     std::array::from_fn(|a| std::array::from_fn(|b| t[a][b]))
 }
 
-/// A lower bound of the smallest principal stretch: that of 1 or J over the product of the others.
+/// A lower bound of the smallest principal stretch: the smaller of 1 and J divided by the product of the other
+/// stretches.
 fn least_stretch(f: &Tensor) -> f64 {
     let c: Tensor = std::array::from_fn(|a| std::array::from_fn(|b| (0..3).map(|k| f[k][a] * f[k][b]).sum()));
     smallest_eigenvalue::<3>(&c).max(1e-6).sqrt().min(1.0)
 }
 
-/// Stresses of the particles from `first` on, and the histories that they leave.
+/// Stresses of the particles from `first` on, and the resulting history variables.
 #[multiversion(targets("x86_64+avx512f+avx512vl+avx512dq", "x86_64+avx2"))]
 #[allow(unsafe_code, reason = "the attribute calls the version that the processor has just been asked for")]
 fn stresses<const D: usize>(
     solid: &Solid<D>,
     state: &State<'_, D>,
     first: usize,
-    stressed: &mut [Stressed<D>],
+    stressed: &mut [ParticleStress<D>],
     after: &mut [f64],
 ) {
     let width = solid.width;

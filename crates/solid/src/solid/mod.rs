@@ -1,9 +1,10 @@
-//! Structures made of particles.
+//! Deformable solids discretised by particles (total Lagrangian).
 //!
-//! A cloud at rest, with least-squares gradients that fulfil the divergence theorem ([`particles`]); an energy of its deformation
-//! whose derivatives are forces ([`forces`]); materials, supports and loads ([`body`]); and what integrators see of it all
-//! ([`system`]). Bodies of revolution are sections that are turned (`axis`). Natural modes of bodies in space are found without
-//! particles as well, among splines ([`splines`]). Book page `solid-particles`.
+//! The undeformed cloud of particles has least-squares gradients that satisfy the divergence theorem ([`particles`]).
+//! The forces are derivatives of the energy of deformation ([`forces`]). Materials, supports and loads belong to
+//! [`body`]; [`system`] connects a solid to the time integrators. Bodies of revolution are computed on their section
+//! (`axis`). Natural modes of 3-D bodies can also be computed with B-splines instead of particles ([`splines`]). See
+//! the book page `solid-particles`.
 mod axis;
 pub mod body;
 mod cells;
@@ -26,5 +27,5 @@ mod weigh;
 
 pub use axis::held_on_axis;
 pub use body::{Action, Cells, Contact, Damping, Load, Parts, Plane, RigidPlane, Solid, Support};
-pub use particles::{Particles, Unfit};
+pub use particles::{Particles, ParticlesError};
 pub use system::Structure;

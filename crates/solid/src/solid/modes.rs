@@ -1,67 +1,73 @@
-//! Natural modes: K φ = ω² M φ.
+//! Natural modes of a solid: K φ = ω² M φ.
 use super::system::Structure;
 use crate::math::lanczos;
 use crate::math::reduce::{largest, sum};
 use crate::system::{Mechanical, Moment, System};
 
-/// What modes are asked for.
+/// Which modes are computed.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Wanted {
-    /// How many.
+pub struct ModeRequest {
+    /// Number of modes.
     pub count: usize,
-    /// Those nearest above this angular frequency.
+    /// Lower bound of the angular frequency [rad/s]: the modes above it and nearest to it are computed.
     pub above: f64,
 }
 
-/// A natural mode.
+/// A natural mode of a solid.
 #[derive(Clone, Debug)]
 pub struct Mode {
-    /// Angular frequency; 0 where the body moves as a whole.
+    /// Angular frequency [rad/s]; 0 for a rigid-body mode.
     pub omega: f64,
-    /// Displacements, the greatest of which is 1.
+    /// Displacements of all particles, component by component; the greatest magnitude is 1.
     pub shape: Vec<f64>,
-    /// Σ m φ².
+    /// Generalised mass Σ m φ² [kg].
     pub generalised_mass: f64,
-    /// What is left of K φ − ω² M φ, over the larger of both.
+    /// Relative residual |K φ − ω² M φ|, divided by the larger of the two terms.
     pub left: f64,
 }
 
-/// Why there are no modes.
+/// Reason why modes could not be computed.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
-pub enum NoModes {
-    /// The matrix is too large.
+pub enum ModesError {
+    /// The stiffness matrix is too large to be factored.
     #[error(
-        "{unknowns} displacements are more than the {most} of which modes are found\nhint: take a larger spacing; modes of a solid converge with its square"
+        "the solid has {unknowns} displacements, but modes are computed for at most {most}\nhint: use a larger spacing; the error of the modes is proportional to its square"
     )]
     TooLarge {
-        /// How many there are.
+        /// Number of unknowns.
         unknowns: usize,
-        /// How many there may be.
+        /// Greatest number of unknowns that is factored.
         most: usize,
     },
-    /// The stiffness is not positive.
-    #[error("the structure has buckled: its stiffness is not positive in the state at hand\nhint: lower the load")]
+    /// The tangent stiffness is not positive definite.
+    #[error("the structure has buckled: its stiffness is not positive definite in this state\nhint: lower the load")]
     Buckled,
 }
 
-/// Shift in units of what is fast in a structure: free bodies have zero frequencies, for which K alone cannot be factored.
+/// Shift in units of the square of the highest frequency. Free bodies have zero frequencies, for which K alone cannot
+/// be factored.
 const SHIFT: f64 = 1e-9;
-/// What a mode may leave of its equation.
+/// Greatest relative residual of a mode.
 const TOLERANCE: f64 = 1e-9;
-/// Frequencies below this part of the fastest are motions as a whole.
+/// Frequencies below this fraction of the highest one belong to rigid-body modes.
 const RIGID: f64 = 1e-6;
 
-/// The lowest modes around the state `u`.
-pub fn modes<const D: usize>(structure: &Structure<D>, u: &[f64], wanted: &Wanted) -> Result<Vec<Mode>, NoModes> {
+/// The lowest modes of small vibrations about the state `u`. Fails when the stiffness matrix is too large or not
+/// positive definite.
+pub fn modes<const D: usize>(
+    structure: &Structure<D>,
+    u: &[f64],
+    wanted: &ModeRequest,
+) -> Result<Vec<Mode>, ModesError> {
     let n = structure.displacements();
     if n > structure.largest_factored() {
-        return Err(NoModes::TooLarge { unknowns: n, most: structure.largest_factored() });
+        return Err(ModesError::TooLarge { unknowns: n, most: structure.largest_factored() });
     }
     let at = Moment { time: 0.0, step: 0.0, displacement: &u[..n], velocity: &u[n..2 * n], history: &u[2 * n..] };
     let stiffness = structure.linearise(&at, [1.0, 0.0]);
     let fastest = 1.0 / structure.solid.undamped_step(u[..n].as_chunks().0);
     let shift = SHIFT * fastest * fastest;
-    let factors = structure.matrix(&stiffness, 1.0, shift).factor().ok_or(NoModes::Buckled)?;
+    let factors = structure.matrix(&stiffness, 1.0, shift).factor().ok_or(ModesError::Buckled)?;
     let root: Vec<f64> = (0..n).map(|k| structure.mass(k).sqrt()).collect();
     let mask = |x: &mut [f64]| (0..n).filter(|k| structure.is_held(*k)).for_each(|k| x[k] = 0.0);
     let scale = |x: &mut [f64]| x.chunks_exact_mut(n).for_each(|x| x.iter_mut().zip(&root).for_each(|(x, r)| *x *= r));

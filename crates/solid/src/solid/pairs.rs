@@ -1,31 +1,32 @@
-//! Sums over the pairs of a structure: the loops in which its marches spend their time.
+//! Sums over the pairs of particles of a solid: the loops that take most of the time of a computation.
 use multiversion::multiversion;
 
 use super::body::Solid;
 use super::rows::{Columns, Row, ZERO, add, less, row, times};
 use crate::math::Vector;
 
-/// What is known of a particle when its forces are summed.
+/// Stresses and stabilisation coefficients of a particle, from which its forces are summed.
 #[derive(Clone, Copy, Debug)]
-pub struct Stressed<const D: usize> {
-    /// First stress of Piola and Kirchhoff, by columns.
+pub struct ParticleStress<const D: usize> {
+    /// First Piola-Kirchhoff stress, by columns.
     pub(super) stress: Columns<D>,
-    /// Σ c A of the plain fits, of displacement and of velocity, by columns.
+    /// Σ c A of the uncorrected fits A of displacement and velocity, by columns.
     pub(super) smooth: Columns<D>,
-    /// c, its stabilising stiffness.
+    /// Stabilising stiffness c of the displacement residuals.
     pub(super) stiff: f64,
-    /// c of the residuals of its velocity.
+    /// Coefficient c of the velocity residuals.
     pub(super) viscous: f64,
-    /// J, the part of its volume that it keeps.
+    /// Volume ratio J.
     pub(super) volume: f64,
 }
 
-impl<const D: usize> Stressed<D> {
-    /// Nothing.
+impl<const D: usize> ParticleStress<D> {
+    /// A stress-free, undeformed particle.
     pub(super) const ZERO: Self = Self { stress: [ZERO; D], smooth: [ZERO; D], stiff: 0.0, viscous: 0.0, volume: 1.0 };
 }
 
-/// The gradients of a field around a particle: consistent, and of the plain fit; column b is its change along axis b.
+/// Two gradients of a field at particle `i`: the variationally consistent one and the uncorrected fit. Column b is the
+/// derivative along axis b.
 #[inline(always)]
 pub(super) fn gradients<const D: usize>(
     solid: &Solid<D>,
@@ -47,7 +48,7 @@ pub(super) fn gradients<const D: usize>(
     (full.map(|column| times(&column, 1.0 / volume)), plain)
 }
 
-/// The gradient of the plain fit alone.
+/// Gradient by the uncorrected fit alone.
 #[inline(always)]
 pub(super) fn plain_gradient<const D: usize>(solid: &Solid<D>, i: usize, field: impl Fn(usize) -> Row) -> Columns<D> {
     let (x, own) = (&solid.places, field(i));
@@ -60,7 +61,7 @@ pub(super) fn plain_gradient<const D: usize>(solid: &Solid<D>, i: usize, field: 
     solved(solid, i, &moments)
 }
 
-/// Moments of a plain fit times its inverse normal matrix.
+/// Moments of an uncorrected fit multiplied by its inverse normal matrix.
 #[inline(always)]
 fn solved<const D: usize>(solid: &Solid<D>, i: usize, moments: &Columns<D>) -> Columns<D> {
     let inverse = solid.particles.inverse(i);
@@ -71,9 +72,9 @@ fn solved<const D: usize>(solid: &Solid<D>, i: usize, moments: &Columns<D>) -> C
     })
 }
 
-/// Fields whose differences pull particles together: displacement, and velocity where it is damped.
+/// Fields whose residuals act as stabilising forces: the displacement, and the velocity where it is damped.
 #[derive(Clone, Copy)]
-pub(super) struct Pulling<'a, const D: usize> {
+pub(super) struct StabilisedFields<'a, const D: usize> {
     pub displacement: &'a [[f64; D]],
     pub velocity: Option<&'a [[f64; D]]>,
 }
@@ -84,8 +85,8 @@ pub(super) struct Pulling<'a, const D: usize> {
 pub(super) fn internal<const D: usize>(
     solid: &Solid<D>,
     first: usize,
-    pulling: Pulling<'_, D>,
-    stressed: &[Stressed<D>],
+    pulling: StabilisedFields<'_, D>,
+    stressed: &[ParticleStress<D>],
     force: &mut [[f64; D]],
 ) {
     for (k, force) in force.iter_mut().enumerate() {
@@ -94,9 +95,14 @@ pub(super) fn internal<const D: usize>(
     }
 }
 
-/// Force of the neighbours on one particle. What its own stress makes of the weights is added up first.
+/// Force of the neighbours on one particle. The contribution of its own stress to all pairs is summed first.
 #[inline(always)]
-fn on<const D: usize>(solid: &Solid<D>, i: usize, pulling: Pulling<'_, D>, stressed: &[Stressed<D>]) -> Row {
+fn on<const D: usize>(
+    solid: &Solid<D>,
+    i: usize,
+    pulling: StabilisedFields<'_, D>,
+    stressed: &[ParticleStress<D>],
+) -> Row {
     let (x, own, u) = (&solid.places, &stressed[i], pulling.displacement);
     let (mut force, mut weights, mut offsets) = (ZERO, Vector::<D>::ZERO, ZERO);
     let here = row(&u[i]);

@@ -1,13 +1,14 @@
-//! Clouds of solid particles: where they are at rest, how much of the body each holds, and how gradients are fitted among them.
+//! Particles of an undeformed solid: positions, volumes, and the fit of gradients.
 //!
-//! Gradients are the least-squares fits of the gas, ∇φ_i = Σ_j g_ij (φ_j − φ_i) with weights w = 1/|d|², over all j around i
-//! in its rows, or within [`REACH`] spacings. They are then made *variationally consistent*: of all corrections that leave the gradients of linear fields
-//! exact, the least one, in the norm of the weights, is added for which the discrete divergence theorem holds,
-//! Σ_i V_i g_ij = A_j, with the area vectors A of the surface: uniform stress then has no force inside, and the exact traction on
-//! the surface, on any cloud. Corrections that leave linear fields exact are residuals of the fit itself,
-//! R_ij(λ) = λ_j − λ_i − d_ij·∇λ_i, so that λ solves L λ = A − Σ V g once for each axis, L = Σ_i V_i Σ_j w R_ijᵀR_ij
-//! (after Chen, Hillman and Rüter 2013, doi:10.1002/nme.4512, whose test functions are corrected in like manner). About an axis of
-//! revolution Σ_i V_i g_ij = A_j − 2π a_j e_r takes its place (`axis`).
+//! The gradients are the least-squares fits of the flow solver, ∇φ_i = Σ_j g_ij (φ_j − φ_i) with the weights w =
+//! 1/|d|², over all neighbours j, which are adjacent particles of its rows or all particles within [`REACH`] spacings.
+//! They are then made *variationally consistent*: of all corrections that preserve exactness for linear fields, the
+//! smallest one in the norm of the weights is added such that the discrete divergence theorem Σ_i V_i g_ij = A_j holds
+//! with the area vectors A of the surface. Uniform stress then has no internal force, and the exact traction on the
+//! surface, on any cloud. Corrections that preserve exactness for linear fields are residuals of the fit itself,
+//! R_ij(λ) = λ_j − λ_i − d_ij·∇λ_i, so that λ solves L λ = A − Σ V g once for each axis, with L = Σ_i V_i Σ_j w
+//! R_ijᵀR_ij (following Chen, Hillman and Rüter 2013, doi:10.1002/nme.4512, who correct test functions in this manner).
+//! In a body of revolution, Σ_i V_i g_ij = A_j − 2π a_j e_r takes the place of the divergence theorem (`axis`).
 use std::ops::Range;
 
 use crate::cloud::grid::Grid;
@@ -18,101 +19,106 @@ use crate::math::parallel::{sweep, sweep_each};
 use crate::math::reduce::{first, maximum, sum};
 use crate::math::sparse;
 
-/// Radius of a cloud in spacings, in the plane and in space, where rows do not say who neighbours are: between the second and the
-/// third ring of a square and of a body-centred lattice, so that no diagonal of a sheared cell is lost.
+/// Radius of a neighbour list in spacings, in 2-D and 3-D, where rows do not define the neighbours. It lies between the
+/// second and the third shell of a square and of a body-centred cubic lattice, so that no diagonal of a sheared cell is
+/// lost.
 pub const REACH: [f64; 2] = [1.8, 1.4];
-/// Neighbours below which particles are joined to all that they share simplices with.
+/// Number of neighbours below which a particle is joined to all others with which it shares simplices.
 const FEW: usize = 8;
-/// What the divergence theorem may leave of a particle's area h^(D−1).
+/// Tolerance of the divergence theorem, relative to the area h^(D−1) of a particle.
 const CLOSED: f64 = 1e-11;
-/// Particles up to which the equations of the correction are preconditioned by their factors, in the plane and in space.
+/// Greatest number of particles for which the equations of the correction are preconditioned by factors, in 2-D and
+/// 3-D.
 const FACTORED: [usize; 2] = [200_000, 30_000];
-/// Part of its diagonal that is added to a matrix which does not see linear fields.
+/// Fraction of its diagonal that is added to a matrix which is singular for linear fields.
 const LITTLE: f64 = 1e-10;
-/// Part of the weights of fits that the correction may change, rms over the cloud: half on random clouds.
-const MOST: f64 = 0.8;
-/// Most iterations of the correction.
+/// Greatest relative change of the weights by the correction, as root mean square over a neighbour list; it is one half
+/// on random clouds.
+const MAX_CORRECTION: f64 = 0.8;
+/// Greatest number of iterations for the correction.
 const ITERATIONS: usize = 5000;
 
 /// A neighbour of a particle.
 #[derive(Clone, Copy, Debug)]
 pub struct Edge<const D: usize> {
-    /// Its number.
+    /// Index of the neighbour.
     pub other: u32,
-    /// w, the weight of the pair in fits.
+    /// Weight w of the pair in the fits.
     pub weight: f64,
-    /// V_i g_ij of the particle at hand.
+    /// V_i g_ij of the particle itself.
     pub own: Vector<D>,
     /// V_j g_ji of the neighbour.
     pub counter: Vector<D>,
 }
 
-/// A flat piece of surface between particles, which share its area.
+/// A flat piece of the surface between particles, which share its area.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Facet<const D: usize> {
-    /// Particles at its corners, in order around it seen from outside; the first `count` of them.
+    /// Particles at its corners, in order when viewed from outside; the first `count` entries are valid.
     corners: [u32; 4],
     count: u8,
-    /// Part of the area that each of them has.
+    /// Fraction of the area that belongs to each corner.
     parts: [f64; 4],
-    /// Area vector, pointing outwards; length in the plane.
+    /// Area vector, directed outward (length instead of area in 2-D).
     pub area: Vector<D>,
 }
 
 impl<const D: usize> Facet<D> {
-    /// The facet between four particles at most.
+    /// The facet between at most four particles, which share its area equally.
     pub fn new(between: &[u32], area: Vector<D>) -> Self {
         let mut corners = [0; 4];
         corners[..between.len()].copy_from_slice(between);
         Self { corners, count: between.len() as u8, parts: [1.0 / between.len() as f64; 4], area }
     }
 
-    /// The same piece with another area, of which its first two corners have these parts.
+    /// The same corners with another area, of which these fractions belong to the first two corners.
     pub(super) fn weighted(&self, area: Vector<D>, [a, b]: [f64; 2]) -> Self {
         Self { parts: [a, b, 0.0, 0.0], area, ..*self }
     }
 
-    /// Particles at its corners.
+    /// Particles at the corners.
     pub fn corners(&self) -> &[u32] {
         &self.corners[..usize::from(self.count)]
     }
 
-    /// Its corners, each with the area that it has.
+    /// Corners with the part of the area vector that belongs to each.
     pub fn shares(&self) -> impl Iterator<Item = (usize, Vector<D>)> {
         self.corners().iter().zip(self.parts).map(|(i, part)| (*i as usize, self.area * part))
     }
 
-    /// The same between particles that have other numbers.
+    /// The facet with its corners renumbered.
     fn renumbered(&self, new: &[u32]) -> Self {
         let between: Vec<u32> = self.corners().iter().map(|i| new[*i as usize]).collect();
         Self { parts: self.parts, ..Self::new(&between, self.area) }
     }
 }
 
-/// Places, volumes and surface of particles, before gradients are known.
+/// Positions, volumes and surface of particles, before gradients are fitted. Lengths are in the unit of the geometry.
 #[derive(Clone, Debug, Default)]
 pub struct Fill<const D: usize> {
-    /// Places at rest; those on the surface first.
+    /// Undeformed positions; surface particles come first.
     pub x: Vec<Vector<D>>,
-    /// Volume of each, area in the plane.
+    /// Volume of each particle; area in 2-D.
     pub volume: Vec<f64>,
-    /// The surface.
+    /// Facets of the surface.
     pub facets: Vec<Facet<D>>,
-    /// Distance of neighbours.
+    /// Distance between neighbours.
     pub spacing: f64,
-    /// Neighbours of each in the order of their numbers, where rows say who they are; empty: all within reach.
+    /// Neighbours of each particle in ascending order, where rows define them; empty: all particles within reach.
     pub rows: Vec<Vec<u32>>,
-    /// Particles that each shares simplices with, in the order of their numbers; empty where volumes are not those of tetrahedra.
+    /// For each particle, the others with which it shares simplices, in ascending order; empty unless volumes come from
+    /// tetrahedra.
     pub ties: Vec<Vec<u32>>,
-    /// First moment in the plane that each stands for beyond volume times place; empty in space.
+    /// First moment that each particle represents in addition to volume times position, in 2-D; empty in 3-D.
     pub moment: Vec<Vector<D>>,
-    /// 2π times the plane area of each about an axis of revolution; empty elsewhere.
+    /// 2π times the plane area of each particle of a body of revolution; empty for other bodies.
     pub turn: Vec<f64>,
 }
 
 impl<const D: usize> Fill<D> {
-    /// The same with all within reach as neighbours, but those for which `apart` holds and that share no simplex; particles with few
-    /// neighbours, as at sharp edges, get all that they share simplices with.
+    /// The fill with neighbours defined as all particles within reach, except pairs for which `apart` holds and that
+    /// share no simplex. Particles with few neighbours, such as those at sharp edges, get all those with which they
+    /// share simplices.
     pub fn seen(mut self, apart: impl Fn(usize, usize) -> bool) -> Self {
         self.find_rows();
         let tied = |i: usize, j: u32| self.ties.get(i).is_some_and(|ties| ties.binary_search(&j).is_ok());
@@ -128,14 +134,14 @@ impl<const D: usize> Fill<D> {
         self
     }
 
-    /// Makes all within reach neighbours where nobody has said who they are.
+    /// Defines all particles within reach as neighbours where rows do not define them.
     pub(super) fn find_rows(&mut self) {
         if self.rows.is_empty() {
             self.rows = neighbours(&self.x, REACH[D - 2] * self.spacing);
         }
     }
 
-    /// Area vectors of all particles, pointing outwards; zero inside.
+    /// Area vectors of all particles, directed outward; zero inside the body.
     pub fn areas(&self) -> Vec<Vector<D>> {
         let mut areas = vec![Vector::ZERO; self.x.len()];
         for facet in &self.facets {
@@ -144,7 +150,7 @@ impl<const D: usize> Fill<D> {
         areas
     }
 
-    /// The particles `order` alone, and the facets between them.
+    /// The fill restricted to the particles `order`, with the facets between them.
     pub(super) fn taken(&self, order: &[usize]) -> Self {
         let mut new = vec![u32::MAX; self.x.len()];
         order.iter().enumerate().for_each(|(k, i)| new[*i] = k as u32);
@@ -162,94 +168,94 @@ impl<const D: usize> Fill<D> {
     }
 }
 
-/// Those of `all` that are in `order`, if there are any.
+/// The elements `order` of `all`; empty when `all` is empty.
 fn picked<T: Copy>(all: &[T], order: &[usize]) -> Vec<T> {
     order.iter().filter_map(|i| all.get(*i).copied()).collect()
 }
 
-/// The rows of `order` by new numbers, if there are any.
+/// The rows `order` with renumbered neighbours; empty when `rows` is empty.
 fn renumbered_rows(rows: &[Vec<u32>], order: &[usize], new: &[u32]) -> Vec<Vec<u32>> {
     order.iter().filter_map(|i| rows.get(*i)).map(|row| renumbered(row, new)).collect()
 }
 
-/// Neighbours by their new numbers, without those that have none.
+/// Renumbered neighbours, without those that have no new number.
 fn renumbered(row: &[u32], new: &[u32]) -> Vec<u32> {
     let mut row: Vec<u32> = row.iter().map(|j| new[*j as usize]).filter(|j| *j != u32::MAX).collect();
     row.sort_unstable();
     row
 }
 
-/// Particles at rest with the gradients among them.
+/// Undeformed particles with the gradients among them.
 #[derive(Clone, Debug)]
 pub struct Particles<const D: usize> {
-    /// Places at rest.
+    /// Undeformed positions.
     pub x: Vec<Vector<D>>,
-    /// Volume of each.
+    /// Volume of each particle; area in 2-D.
     pub volume: Vec<f64>,
-    /// Area vector of each, pointing outwards; zero inside.
+    /// Area vector of each particle, directed outward; zero inside the body.
     pub area: Vec<Vector<D>>,
-    /// The surface.
+    /// Facets of the surface.
     pub facets: Vec<Facet<D>>,
-    /// Distance of neighbours of each.
+    /// Distance between neighbours at each particle.
     pub spacing: Vec<f64>,
-    /// Largest part of a fit's weights that the correction changed, rms over the cloud.
+    /// Largest relative change of the weights by the correction, as root mean square over a neighbour list.
     pub correction: f64,
-    /// Iterations that the correction took.
+    /// Number of iterations of the correction.
     pub iterations: usize,
     first: Vec<u32>,
     edges: Vec<Edge<D>>,
     inverse: Vec<[[f64; D]; D]>,
-    /// 2π times the plane area of each about an axis of revolution; empty elsewhere.
+    /// 2π times the plane area of each particle of a body of revolution; empty for other bodies.
     turn: Vec<f64>,
 }
 
-/// Why particles make no body.
+/// Reason why no gradients could be fitted.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
-pub enum Unfit {
-    /// A particle has too few neighbours around it.
+pub enum ParticlesError {
+    /// A particle has too few neighbours, or all of them in one line or plane.
     #[error(
-        "the solid particle at {place:?} has {count} neighbours, which do not determine a gradient: the body is too thin there for a spacing of {spacing:.3e}"
+        "the solid particle at {place:?} has {count} neighbours, which do not determine a gradient: the body is too thin there for the spacing {spacing:.3e}"
     )]
     Alone {
-        /// Where.
+        /// Position of the particle.
         place: Vec<f64>,
-        /// How many it has.
+        /// Number of its neighbours.
         count: usize,
-        /// Spacing.
+        /// Distance between neighbours there.
         spacing: f64,
     },
-    /// Gradients would be more correction than fit.
+    /// The correction would change the weights by more than permitted.
     #[error(
-        "the divergence theorem would change the gradients of solid particles by {:.0} %, most at {place:?}, where they have {count} neighbours",
+        "the divergence theorem would change the gradients of solid particles by {:.0} %, most at {place:?}, where a particle has {count} neighbours",
         100.0 * .correction
     )]
     Distorted {
-        /// Where they change most.
+        /// Position of the greatest change.
         place: Vec<f64>,
-        /// Neighbours there.
+        /// Number of neighbours there.
         count: usize,
-        /// Part of the weights that changes, rms over the cloud.
+        /// Relative change of the weights, as root mean square.
         correction: f64,
     },
-    /// The divergence theorem cannot be had.
+    /// The iteration for the divergence theorem did not converge.
     #[error(
-        "the divergence theorem stays open by {left:.1e} of a particle's area after {iterations} iterations: solid particles have too few neighbours, the one at {place:?} only {count}"
+        "the defect of the divergence theorem is {left:.1e} of a particle's area after {iterations} iterations: solid particles have too few neighbours, the one at {place:?} only {count}"
     )]
     Open {
-        /// Where the particle with the fewest neighbours is.
+        /// Position of the particle with the fewest neighbours.
         place: Vec<f64>,
-        /// How many it has.
+        /// Number of its neighbours.
         count: usize,
-        /// What is left.
+        /// Remaining defect, relative to the area of a particle.
         left: f64,
-        /// Iterations.
+        /// Number of iterations.
         iterations: usize,
     },
 }
 
 impl<const D: usize> Particles<D> {
-    /// Fits gradients among the particles of bodies that do not see one another.
-    pub fn new(bodies: Vec<Fill<D>>) -> Result<Self, Unfit> {
+    /// Fits gradients among the particles of unconnected bodies. Fails where a body is too thin for its spacing.
+    pub fn new(bodies: Vec<Fill<D>>) -> Result<Self, ParticlesError> {
         let areas = bodies.iter().flat_map(Fill::areas).collect();
         let (mut x, mut volume, mut facets) = (Vec::new(), Vec::new(), Vec::new());
         let (mut spacing, mut lists, mut turn) = (Vec::new(), Vec::new(), Vec::new());
@@ -289,24 +295,24 @@ impl<const D: usize> Particles<D> {
         self.x.len()
     }
 
-    /// True when there are none.
+    /// True when there are no particles.
     pub fn is_empty(&self) -> bool {
         self.x.is_empty()
     }
 
-    /// Neighbours of a particle.
+    /// Neighbours of particle `i`.
     #[inline(always)]
     pub fn of(&self, i: usize) -> &[Edge<D>] {
         &self.edges[self.range(i)]
     }
 
-    /// Places of the neighbours of a particle among all.
+    /// Range of the neighbours of particle `i` among all pairs.
     #[inline(always)]
     pub fn range(&self, i: usize) -> Range<usize> {
         self.first[i] as usize..self.first[i + 1] as usize
     }
 
-    /// Inverse normal matrix of the plain fit around a particle.
+    /// Inverse normal matrix of the uncorrected fit at particle `i`.
     #[inline(always)]
     pub fn inverse(&self, i: usize) -> &[[f64; D]; D] {
         &self.inverse[i]
@@ -317,19 +323,19 @@ impl<const D: usize> Particles<D> {
         self.edges.len() as f64 / self.len().max(1) as f64
     }
 
-    /// Bytes held.
+    /// Memory of the particles in bytes.
     pub fn bytes(&self) -> usize {
         self.edges.len() * size_of::<Edge<D>>()
             + self.len() * (size_of::<[[f64; D]; D]>() + 2 * size_of::<Vector<D>>() + 12)
     }
 
-    /// Plain fits.
-    fn fit(&mut self, lists: &[Vec<u32>]) -> Result<(), Unfit> {
+    /// Computes the uncorrected fits.
+    fn fit(&mut self, lists: &[Vec<u32>]) -> Result<(), ParticlesError> {
         for (i, list) in lists.iter().enumerate() {
             let offset = |j: &u32| self.x[*j as usize] - self.x[i];
             let (normal, count) = normal_matrix(list.iter().map(offset));
             let Some((inverse, _)) = normal_inverse(&normal) else {
-                return Err(Unfit::Alone { place: self.x[i].0.to_vec(), count, spacing: self.spacing[i] });
+                return Err(ParticlesError::Alone { place: self.x[i].0.to_vec(), count, spacing: self.spacing[i] });
             };
             self.inverse.push(inverse);
         }
@@ -344,30 +350,32 @@ impl<const D: usize> Particles<D> {
         Ok(())
     }
 
-    /// True about an axis of revolution, where the first coordinate is the radius.
+    /// True for a body of revolution, where the first coordinate is the radius.
     pub fn is_round(&self) -> bool {
         !self.turn.is_empty()
     }
 
-    /// Volume of a particle whose gradient may be corrected: on an axis of revolution it is the plain fit.
+    /// Volume of particle `i` for the correction; zero on an axis of revolution, where the gradient stays the
+    /// uncorrected fit.
     #[inline(always)]
     fn corrected(&self, i: usize) -> f64 {
         if self.is_round() && self.x[i][0] == 0.0 { 0.0 } else { self.volume[i] }
     }
 
-    /// 2π times the plane area of a particle about an axis of revolution.
+    /// 2π times the plane area of particle `i` of a body of revolution.
     #[cfg(test)]
     pub(super) fn turn(&self, i: usize) -> f64 {
         self.turn[i]
     }
 
-    /// 2π times the radius about an axis, half a spacing at least; 1 in the plane and in space: what h^D is taken times for the
-    /// volume around a particle.
+    /// Length of the ring of particle `i` in a body of revolution, 2π times the radius but at least half a spacing; 1
+    /// for other bodies. The volume around a particle is this length times h^D.
     pub fn around(&self, i: usize) -> f64 {
         if self.is_round() { std::f64::consts::TAU * self.x[i][0].max(0.5 * self.spacing[i]) } else { 1.0 }
     }
 
-    /// Σ_i V_i g_ij − A_j, and 2π a_j along the radius about an axis: what the divergence theorem leaves at a particle.
+    /// Defect of the divergence theorem at particle `j`: Σ_i V_i g_ij − A_j, plus 2π a_j along the radius in a body of
+    /// revolution.
     fn open(&self, j: usize) -> Vector<D> {
         let mut left = self.of(j).iter().fold(-self.area[j], |sum, e| sum + e.counter - e.own);
         if let Some(turn) = self.turn.get(j) {
@@ -376,8 +384,8 @@ impl<const D: usize> Particles<D> {
         left
     }
 
-    /// The correction.
-    fn close(&mut self) -> Result<(), Unfit> {
+    /// Computes and applies the correction.
+    fn close(&mut self) -> Result<(), ParticlesError> {
         let n = self.len();
         let sizes: Vec<f64> = (0..n).map(|i| self.spacing[i].powi(D as i32 - 1) * self.around(i)).collect();
         let size = |i: usize| sizes[i];
@@ -417,9 +425,9 @@ impl<const D: usize> Particles<D> {
             },
         );
         let worst = self.correct(&lambda);
-        if self.correction > MOST {
+        if self.correction > MAX_CORRECTION {
             let (place, count) = (self.x[worst].0.to_vec(), self.of(worst).len());
-            return Err(Unfit::Distorted { place, count, correction: self.correction });
+            return Err(ParticlesError::Distorted { place, count, correction: self.correction });
         }
         let left = maximum(n, |j| self.open(j).max_abs() / size(j));
         if left <= 100.0 * CLOSED && first(n, |j| !self.open(j).is_finite()).is_none() {
@@ -427,10 +435,10 @@ impl<const D: usize> Particles<D> {
         }
         let fewest = (0..n).min_by_key(|i| self.of(*i).len()).unwrap_or(0);
         let (place, count) = (self.x[fewest].0.to_vec(), self.of(fewest).len());
-        Err(Unfit::Open { place, count, left, iterations: self.iterations })
+        Err(ParticlesError::Open { place, count, left, iterations: self.iterations })
     }
 
-    /// Adds the residuals of `lambda` to the gradients; the particle whose weights change most.
+    /// Adds the residuals of `lambda` to the gradients; returns the particle whose weights change most.
     fn correct(&mut self, lambda: &[Vector<D>]) -> usize {
         let n = self.len();
         let mut gradient = vec![[Vector::ZERO; D]; n];
@@ -457,7 +465,7 @@ impl<const D: usize> Particles<D> {
         worst.1
     }
 
-    /// Σ_j w R_ijᵀR_ij of the cloud around particle `m`, among itself and then its neighbours.
+    /// The matrix Σ_j w R_ijᵀR_ij of particle `m`, with itself first and then its neighbours.
     pub(super) fn residual_block(&self, m: usize) -> Vec<Vec<f64>> {
         let edges = self.of(m);
         let n = edges.len() + 1;
@@ -480,7 +488,8 @@ impl<const D: usize> Particles<D> {
         residual
     }
 
-    /// A matrix of zeros among those that share a cloud, with `block` rows a particle: each with itself and later ones.
+    /// A zero matrix that couples all particles of common neighbour lists, with `block` rows per particle, lower
+    /// triangle.
     pub(super) fn pattern(&self, block: usize) -> sparse::Symmetric {
         let mut all = sparse::Symmetric { first: vec![0], ..sparse::Symmetric::default() };
         let (mut later, mut seen) = (Vec::new(), vec![usize::MAX; self.len()]);
@@ -506,8 +515,8 @@ impl<const D: usize> Particles<D> {
         all
     }
 
-    /// Factors of L, which the linear fields that it does not see would make singular, with a little of its diagonal; `None` of
-    /// large clouds.
+    /// Factors of L plus a small fraction of its diagonal, because L is singular for linear fields; `None` for large
+    /// clouds.
     fn factored(&self, diagonal: &[f64]) -> Option<sparse::Factors> {
         if self.len() > FACTORED[D - 2] {
             return None;
@@ -530,7 +539,7 @@ impl<const D: usize> Particles<D> {
         all.factor()
     }
 
-    /// Gradients of all components of a field by the plain fit.
+    /// Gradients of all components of a field by the uncorrected fit.
     fn raw_gradient(&self, i: usize, q: &[Vector<D>]) -> [Vector<D>; D] {
         let mut moments = [Vector::ZERO; D];
         for e in self.of(i) {
@@ -542,7 +551,7 @@ impl<const D: usize> Particles<D> {
         moments.map(|m| Vector::from_fn(|r| (0..D).map(|c| inverse[r][c] * m[c]).sum()))
     }
 
-    /// (L q)_i = Σ_j w (V_j R_ji − V_i R_ij).
+    /// The product (L q)_i = Σ_j w (V_j R_ji − V_i R_ij).
     fn residuals(&self, i: usize, q: &[Vector<D>], gradient: &[[Vector<D>; D]]) -> Vector<D> {
         self.of(i).iter().fold(Vector::ZERO, |sum, e| {
             let j = e.other as usize;
@@ -552,13 +561,13 @@ impl<const D: usize> Particles<D> {
         })
     }
 
-    /// Volume of all.
+    /// Total volume; area in 2-D.
     pub fn whole(&self) -> f64 {
         sum(self.len(), |i| self.volume[i])
     }
 }
 
-/// R_ij(q) of all components.
+/// Residual R_ij(q) of all components.
 #[inline(always)]
 fn residual<const D: usize>(
     (q, gradient): (&[Vector<D>], &[[Vector<D>; D]]),
@@ -568,7 +577,7 @@ fn residual<const D: usize>(
     Vector::from_fn(|a| q[j][a] - q[i][a] - d.dot(&gradient[i][a]))
 }
 
-/// All particles within `reach` of each, in the order of their numbers.
+/// For each particle, all others within `reach`, in ascending order.
 fn neighbours<const D: usize>(x: &[Vector<D>], reach: f64) -> Vec<Vec<u32>> {
     let mut grid = Grid::new(reach);
     x.iter().enumerate().for_each(|(k, x)| grid.insert(x, k as u32));

@@ -1,20 +1,22 @@
-//! How long a step of explicit marching may be.
+//! Stable time step of explicit integration.
 //!
-//! Verlet's method is stable up to 2/ω of the fastest vibration, and up to (2/ω)(√(1 + ξ²) − ξ) where it is damped by the part ξ of
-//! what is critical (Belytschko, Liu & Moran 2000, *Nonlinear Finite Elements*, section 6.6.5). ω is found by power iteration: on a
-//! lattice it is 1.7 to 1.82 c/h, but a surface particle that stands badly may vibrate twice as fast.
+//! The Verlet method is stable up to the step 2/ω of the fastest vibration, and up to (2/ω)(√(1 + ξ²) − ξ) where this
+//! vibration is damped by the fraction ξ of critical damping (Belytschko, Liu and Moran 2000, *Nonlinear Finite
+//! Elements*, section 6.6.5). ω is found by power iteration. On a lattice it is 1.7 to 1.82 c/h, but a surface particle
+//! in an unfavourable position may vibrate twice as fast.
 use super::body::Solid;
 use super::forces::State;
 use crate::math::Vector;
 use crate::math::parallel::sweep_slots;
 use crate::math::reduce::{maximum, sum};
 
-/// Iterations, and what the estimate they end with, which is from below, is raised by.
+/// Number of iterations, and the factor applied to their estimate, which approaches ω² from below.
 const ITERATIONS: usize = 60;
 const ABOVE: f64 = 1.03;
 
 impl<const D: usize> Solid<D> {
-    /// The longest stable step of the undeformed structure over the least h/c of its particles, and that without damping.
+    /// The longest stable step of the undeformed solid as a multiple of the smallest h/c of its particles, with and
+    /// without damping.
     pub(super) fn step_factors(&self) -> [f64; 2] {
         *self.factor.get_or_init(|| {
             let wave = maximum(self.len(), |i| self.material_of(i).pressure_wave_speed() / self.particles.spacing[i]);
@@ -35,12 +37,12 @@ impl<const D: usize> Solid<D> {
             let omega = (ABOVE * (elastic + self.fastest_contact())).sqrt();
             let damping = 0.5 * ABOVE * viscous / omega;
             let undamped = 2.0 / omega * wave;
-            // √(1 + ξ²) − ξ, which round-off does not take away where ξ is large
+            // √(1 + ξ²) − ξ, written so that no digits cancel where ξ is large
             [undamped / ((1.0 + damping * damping).sqrt() + damping), undamped]
         })
     }
 
-    /// Largest eigenvalue of M⁻¹A of what is free, by power iteration from noise.
+    /// Largest eigenvalue of M⁻¹A on the free displacements, by power iteration from a pseudo-random vector.
     fn largest(&self, mut product: impl FnMut(&[[f64; D]], &mut [[f64; D]])) -> f64 {
         let n = self.len();
         let free = |i: usize, v: &mut [f64; D]| {
@@ -69,7 +71,7 @@ impl<const D: usize> Solid<D> {
         value
     }
 
-    /// What contact may add to ω²: a particle is pressed from two sides at most.
+    /// Upper bound of the contribution of contact to ω²: a particle is pushed from at most two sides.
     fn fastest_contact(&self) -> f64 {
         let Some(contact) = &self.contact else { return 0.0 };
         let of = |i: usize| match self.is_on_surface(i) {

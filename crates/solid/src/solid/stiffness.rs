@@ -1,18 +1,19 @@
-//! The stiffness of a structure as a matrix, for those who factor it.
+//! The tangent stiffness of a solid as a matrix, for direct solvers.
 //!
-//! K couples all particles that are members of one cloud: block (j, k) is Σ_m b_mj C_m b_mk / V_m with C = ∂P/∂F and the weights
-//! b of the cloud around m, and what stabilisation adds, c_m (w_j δ_jk − w_j d_j·M⁻¹d_k w_k). About an axis of revolution the
-//! hoop strain of m couples its displacement along the radius with all members; on the axis it is part of the strain in the plane.
+//! K couples all particles that appear together in one neighbour list. Block (j, k) is Σ_m b_mj C_m b_mk / V_m with C =
+//! ∂P/∂F and the weights b of the gradient at m. The stabilisation adds c_m (w_j δ_jk − w_j d_j·M⁻¹d_k w_k). In a body
+//! of revolution, the hoop strain of m couples its radial displacement with all particles of its list; on the axis it
+//! is part of the strain in the plane.
 use super::body::Solid;
 use super::forces::Tangents;
 use crate::math::Vector;
 use crate::math::sparse::Symmetric;
 
-/// The members of one cloud and what they weigh.
+/// A particle with its neighbours, and the weights of its gradient.
 struct Cloud<const D: usize> {
     members: Vec<usize>,
     weights: Vec<Vector<D>>,
-    /// Rows of the residual's stiffness.
+    /// Rows of the stiffness of the residuals.
     residual: Vec<Vec<f64>>,
 }
 
@@ -29,7 +30,7 @@ impl<const D: usize> Cloud<D> {
 }
 
 impl<const D: usize> Solid<D> {
-    /// `scale` K + `shift` M among what is free, one for what is held.
+    /// The matrix `scale` K + `shift` M on the free displacements, with ones on the diagonal for the constrained ones.
     pub fn matrix_of(&self, tangents: &Tangents<D>, scale: f64, shift: f64) -> Symmetric {
         let mut all = self.particles.pattern(D);
         for m in 0..self.len() {
@@ -68,18 +69,18 @@ impl<const D: usize> Solid<D> {
         all
     }
 
-    /// What the hoop strain of `m` adds to K: to its own displacement along the radius, by those of all members.
+    /// Coupling of the radial displacement of `m` with all particles of its list due to the hoop strain of `m`.
     fn hoops(&self, m: usize, cloud: &Cloud<D>, tangents: &Tangents<D>) -> Vec<[f64; D]> {
         let (t, per_radius) = (&tangents.hoop[m], self.per_radius[m]);
         let of =
             |b: &Vector<D>| std::array::from_fn(|a| per_radius * (0..D).map(|s| t.of_strain[a][s] * b[s]).sum::<f64>());
         let mut all: Vec<[f64; D]> = cloud.weights.iter().map(of).collect();
-        // its own weight is in row and column
+        // its own weight enters the row and the column
         all[0][0] = 2.0 * all[0][0] + t.own * per_radius * self.hoop_weight(m);
         all
     }
 
-    /// Adds what hoop strains and stresses are.
+    /// Adds the terms of hoop strain and hoop stress.
     fn add_hoops(&self, tangents: &Tangents<D>, scale: f64, all: &mut Symmetric) {
         for m in (0..self.len()).filter(|m| self.is_round() && !self.is_held(*m, 0)) {
             let cloud = Cloud::around(self, m);
@@ -100,7 +101,7 @@ impl<const D: usize> Solid<D> {
         let cloud = Cloud::around(self, m);
         let (per_volume, stiff) = (scale / self.particles.volume[m], scale * tangents.stiff[m]);
         for (k, particle) in cloud.members.iter().enumerate() {
-            // C b_k: stress for a unit displacement of member k along each axis
+            // C b_k: stress due to a unit displacement of particle k along each axis
             let stress: [[[f64; D]; D]; D] = std::array::from_fn(|c| {
                 let mut sum = [[0.0; D]; D];
                 for d in 0..D {

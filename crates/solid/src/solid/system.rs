@@ -1,4 +1,4 @@
-//! Structures of particles as systems: M u″ = f(t, u, u′, history).
+//! Solids as dynamical systems: M u″ = f(t, u, u′, history).
 #[cfg(test)]
 mod tests;
 
@@ -8,18 +8,19 @@ use crate::math::reduce::{largest_size, minimum};
 use crate::math::sparse::Symmetric;
 use crate::system::{Damping, Fault, Field, Instant, Mechanical, Moment, Name, System};
 
-/// Unknowns of the largest matrix that is factored, in the plane and in space: what a few seconds and a gigabyte suffice for.
+/// Greatest number of unknowns of a matrix that is factored, in 2-D and 3-D; a factorisation takes a few seconds and a
+/// gigabyte.
 const FACTORED: [usize; 2] = [300_000, 45_000];
 
-/// A structure as a system.
+/// A solid as a dynamical system for the time integrators.
 pub struct Structure<const D: usize> {
-    /// What it is.
+    /// The solid.
     pub solid: Solid<D>,
     fields: Vec<Field>,
 }
 
 impl<const D: usize> Structure<D> {
-    /// The structure as a system.
+    /// Makes a dynamical system of a solid.
     pub fn new(solid: Solid<D>) -> Self {
         let n = solid.len();
         let fields = vec![
@@ -30,7 +31,7 @@ impl<const D: usize> Structure<D> {
         Self { solid, fields }
     }
 
-    /// The state in which it is at rest, with velocities by a function of places.
+    /// The undeformed state with the velocity `velocity(i)` for particle i.
     pub fn start(&self, velocity: impl Fn(usize) -> [f64; D]) -> Vec<f64> {
         let n = self.solid.len();
         let mut u = vec![0.0; n * D];
@@ -43,7 +44,7 @@ impl<const D: usize> Structure<D> {
         u
     }
 
-    /// A state by its parts.
+    /// Displacement, velocity and history of the state vector `u` at a time.
     pub fn state<'a>(&self, time: f64, u: &'a [f64]) -> State<'a, D> {
         let n = self.solid.len() * D;
         moment(&Moment { time, step: 0.0, displacement: &u[..n], velocity: &u[n..2 * n], history: &u[2 * n..] })
@@ -61,7 +62,7 @@ fn moment<'a, const D: usize>(at: &Moment<'a>) -> State<'a, D> {
 }
 
 impl<const D: usize> System for Structure<D> {
-    /// Time.
+    /// The time [s].
     type Frame = f64;
     type Work = Work<D>;
 
@@ -88,7 +89,7 @@ impl<const D: usize> System for Structure<D> {
         let n = self.displacements();
         let (rates, after) = du.split_at_mut(2 * n);
         self.solid.stress(&state, work, after);
-        // between steps materials remember what they did
+        // the history of materials changes at the end of a step only
         after.fill(0.0);
         let (velocity, acceleration) = rates.split_at_mut(n);
         velocity.copy_from_slice(&u[n..2 * n]);

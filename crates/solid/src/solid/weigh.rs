@@ -1,8 +1,9 @@
-//! Volumes and area vectors of particles.
+//! Volumes and area vectors of particles from a triangulation.
 //!
-//! Simplices between the particles are looked at once and forgotten: a simplex T inside the body gives each of its corners a share of
-//! its volume, and sides that belong to one simplex only are the surface, whose area is shared out to corners. So Σ A = 0 and
-//! Σ x ⊗ A = V I to round-off, which the divergence theorem of [`super::particles`] rests on.
+//! The simplices between the particles are used once and not stored. A simplex T inside the body assigns a share of its
+//! volume to each of its corners. Faces that belong to one simplex only form the surface, whose area is shared among
+//! their corners. Hence Σ A = 0 and Σ x ⊗ A = V I to round-off, as the divergence theorem of [`super::particles`]
+//! requires.
 use std::collections::HashMap;
 
 use super::particles::{Facet, Fill};
@@ -11,15 +12,16 @@ use crate::math::rotation::cross;
 use crate::math::tetrahedra::delaunay;
 use crate::math::triangulation::triangulate;
 
-/// Height in spacings below which a tetrahedron between particles of the surface is flat: its middle does not say whether it is
-/// inside. Between particles of a sphere of four spacings it is 0.03.
+/// Height, in spacings, below which a tetrahedron between surface particles is flat, so that its centre does not tell
+/// whether it lies inside. Between particles of a sphere with a diameter of four spacings it is 0.03.
 const FLAT: f64 = 0.12;
 
-/// Twice the area in spacings squared of a triangle that round-off has made.
+/// Twice the area, in squared spacings, below which a triangle is a product of round-off.
 const NOTHING: f64 = 1e-9;
 
-/// Volumes and areas of particles in the plane: triangles between them, each with a side along `outline`, for whose middle `inside`
-/// holds. Shares are those of Voronoi's cells where no angle is obtuse (Meyer, Desbrun, Schröder and Barr 2003).
+/// Volumes and areas of particles in 2-D from the triangles between them, which are constrained by `outline` and whose
+/// centre satisfies
+/// `inside`. The shares are Voronoi areas where no angle is obtuse (Meyer, Desbrun, Schröder and Barr 2003).
 pub(super) fn weigh_in_plane(
     x: Vec<Vector<2>>,
     outline: &[[u32; 2]],
@@ -30,7 +32,7 @@ pub(super) fn weigh_in_plane(
     for triangle in triangulate(&x, outline) {
         let corners = triangle.map(|i| x[i as usize]);
         let [b, c] = [corners[1] - corners[0], corners[2] - corners[0]];
-        // three particles of a straight side, which would lose the one between the others
+        // three particles on a straight side: the triangle would remove the middle one from the surface
         if (b[0] * c[1] - b[1] * c[0]).abs() < NOTHING * spacing * spacing {
             continue;
         }
@@ -53,13 +55,13 @@ pub(super) fn weigh_in_plane(
     Fill { x, volume, facets, spacing, moment, ..Fill::default() }
 }
 
-/// What the shares of a triangle leave of its first moment, a third of it: a part for each corner.
+/// First moment of a triangle that its shares miss, divided by three: one part for each corner.
 fn moment_left(corners: &[Vector<2>; 3], shares: &[f64; 3]) -> Vector<2> {
     let third = shares.iter().sum::<f64>() / 3.0;
     corners.iter().zip(shares).fold(Vector::ZERO, |sum, (x, share)| sum + *x * ((third - share) / 3.0))
 }
 
-/// Sides of simplices, and how often each is there.
+/// Faces of simplices, with the number of simplices that have each.
 struct Sides<const D: usize>(HashMap<[u32; D], ([u32; D], u32)>);
 
 impl<const D: usize> Default for Sides<D> {
@@ -75,7 +77,7 @@ impl<const D: usize> Sides<D> {
         self.0.entry(key).or_insert((side, 0)).1 += 1;
     }
 
-    /// Those that are there once, in the order of their corners.
+    /// Faces that belong to one simplex only, sorted by their corners.
     fn single(self) -> Vec<[u32; D]> {
         let mut once: Vec<_> = self.0.into_iter().filter(|(_, (_, count))| *count == 1).collect();
         once.sort_unstable();
@@ -83,13 +85,13 @@ impl<const D: usize> Sides<D> {
     }
 }
 
-/// How the area of a triangle is shared out to its corners.
+/// Fractions of the area of a triangle that belong to its corners.
 fn shares(corners: &[Vector<2>; 3]) -> [f64; 3] {
     let side = |k: usize| corners[(k + 2) % 3] - corners[(k + 1) % 3];
     let along = |k: usize| side((k + 1) % 3) * -1.0;
     let turn = |a: Vector<2>, b: Vector<2>| a[0] * b[1] - a[1] * b[0];
     let area = 0.5 * turn(side(0), side(1)).abs();
-    // a cosine times two sides, at each corner
+    // at each corner, its cosine times the lengths of both sides
     let cosine = [0, 1, 2].map(|k| along(k).dot(&side((k + 2) % 3)));
     if let Some(obtuse) = (0..3).find(|k| cosine[*k] < 0.0) {
         return [0, 1, 2].map(|k| if k == obtuse { 0.5 * area } else { 0.25 * area });
@@ -98,7 +100,8 @@ fn shares(corners: &[Vector<2>; 3]) -> [f64; 3] {
     [0, 1, 2].map(|k| (part((k + 1) % 3) + part((k + 2) % 3)) / 8.0)
 }
 
-/// The same in space, by quarters of tetrahedra; the first `skin` particles are on the surface.
+/// Volumes and areas of particles in 3-D: each tetrahedron assigns a quarter to each corner. The first `skin` particles
+/// lie on the surface.
 pub(super) fn weigh_in_space(
     x: Vec<Vector<3>>,
     skin: usize,
@@ -128,7 +131,7 @@ pub(super) fn weigh_in_space(
     Fill { x, volume, facets, spacing, ties, ..Fill::default() }
 }
 
-/// Particles that each of `count` particles shares simplices with, in the order of their numbers.
+/// For each of `count` particles, the others with which it shares a simplex, in ascending order.
 fn ties(all: &[[u32; 4]], count: usize) -> Vec<Vec<u32>> {
     let mut ties = vec![Vec::new(); count];
     for t in all {
@@ -143,12 +146,12 @@ fn ties(all: &[[u32; 4]], count: usize) -> Vec<Vec<u32>> {
     ties
 }
 
-/// Sides of a tetrahedron, seen from outside.
+/// Faces of a tetrahedron, oriented outward.
 fn faces(t: &[u32; 4]) -> [[u32; 3]; 4] {
     [[1, 2, 3], [0, 3, 2], [0, 1, 3], [0, 2, 1]].map(|face: [usize; 3]| face.map(|k| t[k]))
 }
 
-/// Takes flat tetrahedra away that lie on the surface of the others, layer by layer: inside they hold the others together.
+/// Removes flat tetrahedra on the surface of the others, layer by layer; inside the body they connect the others.
 fn without_flat_skin(all: Vec<[u32; 4]>, flat: impl Fn(&[u32; 4]) -> bool) -> Vec<[u32; 4]> {
     let key = |mut face: [u32; 3]| {
         face.sort_unstable();

@@ -1,10 +1,12 @@
-//! Closure to round-off: the smallest change of the area vectors between particles after which each particle's sum is zero.
+//! Closure to round-off: the smallest change of the area vectors between particles after which the sum of each particle
+//! is zero.
 //!
-//! s_ij changes by w_ij (y_i − y_j), and Σ_j w_ij (y_i − y_j) is what the sum lacks.
+//! The area vector s_ij changes by w_ij (y_i − y_j), where Σ_j w_ij (y_i − y_j) equals the missing part of the sum of
+//! particle i.
 use std::ops::Range;
 
 use super::cycle::{Cycle, Grid, Levels, Way};
-use super::{MOST_ITERATIONS, Problem};
+use super::{MAX_CLOSURE_ITERATIONS, Problem};
 use crate::cloud::Operators;
 use crate::cloud::coefficient_unknowns::{Kind, Link};
 use crate::math::Vector;
@@ -12,17 +14,17 @@ use crate::math::conjugate::{Symmetric, conjugate_gradients};
 use crate::math::parallel::sweep;
 use crate::math::reduce::sum;
 
-/// Reduction of the defect in one round.
+/// Relative reduction of the defect in one round.
 const TOLERANCE: f64 = 1e-9;
 /// Defect, relative to the area of a particle, that counts as round-off.
 const ROUND_OFF: f64 = 1e-14;
-/// Part of that at which iterating stops: the largest defect exceeds the root mean square.
+/// Fraction of this defect at which the iteration stops: the largest defect exceeds the root mean square.
 const FLOOR: f64 = 0.1;
-/// Rounds.
+/// Greatest number of rounds.
 const ROUNDS: usize = 4;
 
 impl<const D: usize> Problem<'_, D> {
-    /// Closes all particles; the iterations that it took.
+    /// Closes the area vectors of all particles and returns the number of iterations.
     pub(super) fn close(&self, operators: &mut Operators<D>, levels: &Levels<D>) -> usize {
         let (n, mut iterations, weight) = (self.n_fluid, 0, &self.passing);
         let mut cycle = Cycle::new(levels, n);
@@ -42,13 +44,13 @@ impl<const D: usize> Problem<'_, D> {
             let precondition = |r: &[Vector<D>], z: &mut [Vector<D>]| cycle.nearly_solve(self, r, z);
             let mut y = vec![Vector::ZERO; n];
             let system = Symmetric { enough: |r: &[Vector<D>]| size(r) <= goal, product, precondition };
-            iterations += conjugate_gradients(&mut y, &mut r, MOST_ITERATIONS, system);
+            iterations += conjugate_gradients(&mut y, &mut r, MAX_CLOSURE_ITERATIONS, system);
             self.alter(operators, |i, link| self.closure_change(i, link, &y));
         }
         iterations
     }
 
-    /// What the area vectors of every fluid particle lack.
+    /// Missing part of the sum of the area vectors of every fluid particle.
     pub(super) fn open(&self, operators: &Operators<D>) -> Vec<Vector<D>> {
         self.sums(operators, Vector::ZERO, |sum, s, _| *sum -= *s)
     }
@@ -67,7 +69,7 @@ impl<const D: usize> Problem<'_, D> {
         sum
     }
 
-    /// What `y` changes the area vector of an entry of row `i` by.
+    /// Change of the area vector of an entry of row `i` due to `y`.
     #[inline(always)]
     fn closure_change(&self, i: usize, link: &Link<D>, y: &[Vector<D>]) -> Vector<D> {
         match link.kind {

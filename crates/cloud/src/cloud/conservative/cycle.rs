@@ -1,9 +1,9 @@
-//! Sweeps over the particles and over coarser and coarser groups of them ([`super::levels`]), which nearly solve for the
-//! multipliers whatever their number.
+//! Multilevel preconditioner: sweeps over the particles and over increasingly coarse groups of them
+//! ([`super::levels`]). The number of iterations hardly depends on the number of particles.
 //!
-//! Every level sweeps forth on the way down and back on the way up, chunk by chunk: inside a chunk with what has just been found,
-//! beyond it with what was known before. A pair's energy w |φ_i − φ_j|² is at most twice that of its ends each on its own, so that
-//! such sweeps, in whatever order, are those of a positive preconditioner.
+//! Every level sweeps forward on the way down and backward on the way up, chunk by chunk: with updated values inside a
+//! chunk and with old values outside it. The energy w |φ_i − φ_j|² of a pair is at most twice the sum of the energies
+//! of its two ends alone. Such sweeps are therefore positive definite preconditioners in any order.
 use std::ops::Range;
 
 use multiversion::multiversion;
@@ -16,12 +16,12 @@ use crate::math::Vector;
 use crate::math::conjugate;
 use crate::math::parallel::{copy, sweep_chunks, sweep_slots};
 
-/// Visits to the next coarser level.
+/// Number of visits to the next coarser level.
 const VISITS: usize = 2;
-/// Sweeps forth and back where there is none.
+/// Number of forward and backward sweeps on the coarsest level.
 const COARSEST_SWEEPS: usize = 10;
 
-/// The two ways to sweep.
+/// Direction of a sweep.
 #[derive(Clone, Copy)]
 pub(super) enum Way {
     Forth,
@@ -29,7 +29,7 @@ pub(super) enum Way {
 }
 
 impl Way {
-    /// True when row `j` of a range comes before row `i` on this way.
+    /// True when row `j` of a range comes before row `i` in this direction.
     #[inline(always)]
     pub(super) fn has_passed(self, range: &Range<usize>, i: usize, j: usize) -> bool {
         match self {
@@ -39,35 +39,36 @@ impl Way {
     }
 }
 
-/// A positive matrix by its rows.
+/// A symmetric positive definite matrix given by its rows.
 pub(super) trait Grid<V>: Sync {
-    /// b − A x in row `i`.
+    /// Residual b − A x of row `i`.
     fn left(&self, i: usize, b: &V, x: &[V]) -> V;
 
-    /// r less what row `i` makes of the rows of a range that `way` has passed, which `found` holds.
+    /// r minus the contribution to row `i` of the rows of a range that the sweep has passed, whose values are in
+    /// `found`.
     fn less(&self, i: usize, r: V, range: &Range<usize>, found: &[V], way: Way) -> V;
 
-    /// What the block of row `i` makes r of.
+    /// Solution of the diagonal block of row `i` for the right-hand side r.
     fn solved(&self, i: usize, r: &V) -> V;
 
-    /// Sets what follows from all else.
+    /// Sets the values that follow from all others.
     fn follow(&self, _b: &[V], _x: &mut [V]) {}
 }
 
-/// What a level needs to remember.
+/// Work arrays of a level.
 struct Store<V> {
     b: Vec<V>,
     x: Vec<V>,
     left: Vec<V>,
 }
 
-/// The levels, and what they remember.
+/// The levels and their work arrays.
 pub(super) struct Cycle<'a, const D: usize, V> {
     levels: &'a Levels<D>,
     stores: Vec<Store<V>>,
 }
 
-/// Coarser versions of a problem, and its mirrors.
+/// Coarser versions of a problem, and its planes of symmetry.
 pub(super) struct Levels<const D: usize> {
     coarser: Vec<Level<D>>,
     mirrors: Vec<Mirror>,
@@ -92,7 +93,7 @@ where
         Self { levels, stores: std::iter::once(finest).chain(coarser).collect() }
     }
 
-    /// z ≈ A⁻¹ r.
+    /// Approximate solution z ≈ A⁻¹ r.
     pub(super) fn nearly_solve(&mut self, problem: &Problem<'_, D>, r: &[V], z: &mut [V]) {
         sweep_slots(z, |_, z| *z = V::ZERO);
         visit(problem, &self.levels.coarser, &problem.signs, &mut self.stores, (r, &mut *z), true);
@@ -109,13 +110,13 @@ where
     }
 }
 
-/// A level with the signs under which its groups see others.
+/// A level with the signs of the transforms under which its groups are coupled.
 pub(super) struct Signed<'a, const D: usize> {
     level: &'a Level<D>,
     signs: &'a [Vector<D>],
 }
 
-/// One cycle for A x = b on a level and all coarser ones; `first` where x is zero.
+/// One cycle for A x = b on a level and all coarser ones; `first` when x is zero.
 fn visit<const D: usize, V: Field<D>, G: Grid<V>>(
     grid: &G,
     coarser: &[Level<D>],
@@ -169,15 +170,15 @@ fn improve<V: conjugate::Row, G: Grid<V>>(grid: &G, b: &[V], x: &mut [V], left: 
     step(grid, x, left, way);
 }
 
-/// Adds to x what a sweep finds from what is left.
+/// Adds the correction of a sweep for the residual `left` to x.
 fn step<V: conjugate::Row, G: Grid<V>>(grid: &G, x: &mut [V], left: &mut [V], way: Way) {
     sweep_chunks(left, |range, found| find(grid, range, found, way));
     sweep_slots(&mut x[..left.len()], |i, x| *x = x.plus(1.0, &left[i]));
 }
 
-// The sums of rows are compiled for wider registers too.
+// The sums over rows are also compiled for wider vector registers.
 
-/// b − A x in the rows of a range.
+/// Residual b − A x in the rows of a range.
 #[multiversion(targets("x86_64+avx512f+avx512vl+avx512dq", "x86_64+avx2"))]
 #[allow(unsafe_code, reason = "the attribute calls the version that the processor has just been asked for")]
 fn lefts<V, G: Grid<V>>(grid: &G, (b, x): (&[V], &[V]), range: Range<usize>, left: &mut [V]) {
@@ -187,7 +188,7 @@ fn lefts<V, G: Grid<V>>(grid: &G, (b, x): (&[V], &[V]), range: Range<usize>, lef
     }
 }
 
-/// Turns what is left in the rows of a range into what a sweep finds there.
+/// Replaces the residual in the rows of a range by the correction of a sweep.
 #[multiversion(targets("x86_64+avx512f+avx512vl+avx512dq", "x86_64+avx2"))]
 #[allow(unsafe_code, reason = "the attribute calls the version that the processor has just been asked for")]
 fn find<V: conjugate::Row, G: Grid<V>>(grid: &G, range: Range<usize>, found: &mut [V], way: Way) {

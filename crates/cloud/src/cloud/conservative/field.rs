@@ -1,17 +1,18 @@
 //! Multipliers as fields.
 //!
-//! The multipliers of a particle are those of an affine field, φ_i(x) = λ_i + M_i (x − x_i), and a pair moves its area vector by
-//! what the fields of its ends differ by at the middle m between them, w_ij (φ_i(m) − φ_j(m)). So groups of particles may share a
-//! field, and what couples two groups is again a sum of products of affine functions, their [`Moments`]. The closure alone has
-//! constant fields.
+//! The multipliers of a particle form an affine field, φ_i(x) = λ_i + M_i (x − x_i). The area vector of a pair changes
+//! by the difference of the fields of both ends at the midpoint m, w_ij (φ_i(m) − φ_j(m)). Groups of particles can
+//! therefore share a field, and the coupling of two groups is again a sum of products of affine functions, given by
+//! their [`Moments`]. The closure alone has constant fields.
 use crate::cloud::multipliers::{Factors, Row, add_to};
 use crate::math::Vector;
 use crate::math::conjugate::{self, Row as _};
 
-/// Factor on what couples groups, level by level; the number of iterations hardly depends on it between 0.25 and 0.5.
+/// Factor on the coupling of groups at each level; the number of iterations hardly depends on it between 0.25 and 0.5.
 pub(super) const STIFFNESS: f64 = 0.35;
 
-/// Σ w (1, m) ⊗ (1, m) over pairs with weights w and middles m from some origin, in single precision: they only precondition.
+/// Moments Σ w (1, m) ⊗ (1, m) over pairs with weights w and midpoints m relative to an origin, in single precision,
+/// because they serve in the preconditioner only.
 #[derive(Clone, Copy)]
 pub(super) struct Moments<const D: usize> {
     weight: f32,
@@ -22,19 +23,19 @@ pub(super) struct Moments<const D: usize> {
 impl<const D: usize> Moments<D> {
     pub(super) const ZERO: Self = Self { weight: 0.0, first: [0.0; D], second: [[0.0; D]; D] };
 
-    /// Of one pair.
+    /// Moments of one pair.
     #[inline(always)]
     pub(super) fn of(weight: f64, middle: &[f32; D]) -> Self {
         Self { weight: weight as f32, ..Self::ZERO }.seen_from(middle)
     }
 
-    /// Σ w.
+    /// Sum of the weights Σ w.
     #[inline(always)]
     pub(super) fn weight(&self) -> f64 {
         f64::from(self.weight)
     }
 
-    /// self + s · other.
+    /// The sum self + s · other.
     #[inline(always)]
     pub(super) fn plus(&self, s: f64, other: &Self) -> Self {
         let (mut sum, s) = (*self, s as f32);
@@ -48,7 +49,7 @@ impl<const D: usize> Moments<D> {
         sum
     }
 
-    /// The same from another origin, from which this one is at `here`.
+    /// The moments about an origin at the offset −`here` from this one.
     #[inline(always)]
     pub(super) fn seen_from(&self, here: &[f32; D]) -> Self {
         let mut all = *self;
@@ -64,30 +65,31 @@ impl<const D: usize> Moments<D> {
 
 /// Multipliers of the particles, or of groups of them.
 pub(super) trait Field<const D: usize>: conjugate::Row {
-    /// Part of what a group finds that its members take. Fields with steps between groups are stiffer than smooth ones, by
-    /// [`STIFFNESS`] for affine fields; constant ones by half.
+    /// Fraction of the correction of a group that its members take. Fields with steps between groups are stiffer than
+    /// smooth ones, by [`STIFFNESS`] for affine fields and by one half for constant ones.
     const STEP: f64;
-    /// Part of a right-hand side that its mirror image may miss where it counts as symmetric: what rounding leaves at the end, where only
-    /// as much as the tolerance is left of the first one. Lists of neighbours need not be symmetric, where two are as far away, and what
-    /// they leave must still be found.
+    /// Relative asymmetry up to which a right-hand side counts as symmetric. It allows for round-off at the end of the
+    /// iteration, where only the tolerance is left of the initial right-hand side. Neighbour lists may be asymmetric
+    /// where two candidates are equally distant, and the asymmetry that they cause must still be resolved.
     const SYMMETRIC: f64;
 
-    /// The field from the offset `d` on.
+    /// The field relative to an origin moved by `d`.
     fn at(&self, d: &[f32; D]) -> Self;
 
-    /// A condition on the field from there, as one on this field: the transpose of `at`.
+    /// A condition on the field relative to the moved origin, as a condition on this field: the transpose of `at`.
     fn gathered(&self, d: &[f32; D]) -> Self;
 
-    /// The field in a mirror, or shifted: components change their signs.
+    /// The mirrored or translated field: components change their signs.
     fn mirrored(&self, sign: &Vector<D>) -> Self;
 
-    /// What pairs with these moments make of the field.
+    /// Product of the moments with the field.
     fn weighed(&self, moments: &Moments<D>) -> Self;
 
-    /// What a group makes of its own field: all its pairs with others, its softness and the freedom of its volume.
+    /// Product of the diagonal block of a group with its field: all pairs with other groups, softness and mobility of
+    /// the volume.
     fn own(&self, pairs: &Moments<D>, soft: [f64; 2]) -> Self;
 
-    /// The field of group `i` of which it makes this.
+    /// The field of group `i` whose product with the diagonal block is this one.
     fn solved(&self, pairs: &Moments<D>, factors: &Factors<D>, i: usize) -> Self;
 }
 

@@ -1,8 +1,8 @@
-//! Coarser and coarser versions of the conditions: groups of particles that share a field.
+//! Coarser levels of the system for the multipliers: groups of particles that share a field.
 //!
-//! Each level is what the one below makes of fields that are affine on every group (Galerkin), but for the pairs between groups: an
-//! affine field on groups has steps between them that a smooth field has not, and they are made less stiff. A wall stands with the
-//! nearest particle in front of it and follows the field there.
+//! Each level is the Galerkin projection of the finer one onto fields that are affine on every group, except for the
+//! pairs between groups: affine fields on groups have steps between them that a smooth field does not have, and these
+//! pairs are made less stiff. A wall belongs to the nearest particle in front of it and follows the field there.
 use super::field::{Field, Moments, STIFFNESS};
 use super::{Problem, Sharer};
 use crate::cloud::coefficient_unknowns::{ITSELF, Kind, Link};
@@ -11,29 +11,29 @@ use crate::math::Vector;
 use crate::math::groups::Groups;
 use crate::math::parallel::{sweep, sweep_each};
 
-/// Rows a group.
+/// Number of rows per group.
 const GROUP: usize = 8;
-/// Where there are thin layers, rows join groups only along pairs with at least this part of the greatest weight of a row: across the
-/// layers first, where weights are those of large faces.
+/// Where there are thin layers, rows are grouped only along pairs with at least this fraction of the greatest weight of
+/// a row: first across the layers, where large faces have large weights.
 const STRONG: f64 = 0.1;
-/// Rows at which coarsening stops, and most levels.
+/// Number of rows at which coarsening stops, and greatest number of levels.
 const COARSEST: usize = 200;
-const MOST_LEVELS: usize = 12;
+const MAX_LEVELS: usize = 12;
 
-/// What couples a group with another one.
+/// Coupling of a group with another one.
 #[derive(Clone, Copy)]
 pub(super) struct Edge<const D: usize> {
     pub(super) other: u32,
-    /// Transform under which the other is seen, or `ITSELF`.
+    /// Transform under which the other group is coupled, or `ITSELF`.
     transform: u8,
-    /// From the centre of the group to that of the other.
+    /// Offset from the centre of the group to that of the other.
     shift: [f32; D],
-    /// Middles of the pairs, from the centre of the group.
+    /// Moments of the pairs, with midpoints relative to the centre of the group.
     moments: Moments<D>,
 }
 
 impl<const D: usize> Edge<D> {
-    /// What the group makes of the field of the other.
+    /// Contribution of the field of the other group to the product in the row of the group.
     #[inline(always)]
     pub(super) fn pull<V: Field<D>>(&self, signs: &[Vector<D>], other: &V) -> V {
         let back = opposite(&self.shift);
@@ -44,21 +44,21 @@ impl<const D: usize> Edge<D> {
     }
 }
 
-/// Groups, or particles, that are gathered into groups.
+/// A level, or the particles, whose rows are grouped.
 trait Finer<const D: usize>: Sync {
     fn n_rows(&self) -> usize;
     fn centre(&self, i: usize) -> Vector<D>;
-    /// Calls `f` with every edge of row `i`.
+    /// Calls `f` with every coupling of row `i`.
     fn edges(&self, i: usize, f: &mut dyn FnMut(&Edge<D>));
-    /// Pairs with what has no multipliers.
+    /// Moments of the pairs whose other end has no multipliers.
     fn open(&self, i: usize) -> Moments<D>;
-    /// Softness and freedom of the volume.
+    /// Softness of row `i` and mobility of its volume.
     fn soft(&self, i: usize) -> [f64; 2];
 }
 
-/// One of the coarser versions.
+/// One of the coarser levels.
 pub(super) struct Level<const D: usize> {
-    /// Rows of the finer version that share a field.
+    /// Rows of the finer level that share a field.
     pub(super) groups: Groups,
     /// Offset of each of those rows from the centre of its group.
     pub(super) offset: Vec<[f32; D]>,
@@ -66,18 +66,18 @@ pub(super) struct Level<const D: usize> {
     first: Vec<u32>,
     edges: Vec<Edge<D>>,
     open: Vec<Moments<D>>,
-    /// All pairs of a group with others.
+    /// Moments of all pairs of a group with others.
     pub(super) own: Vec<Moments<D>>,
-    /// Softness of each, and the freedom of its volume.
+    /// Softness of each group and mobility of its volume.
     pub(super) soft: Vec<[f64; 2]>,
     pub(super) factors: Factors<D>,
 }
 
-/// All of them, coarser and coarser.
+/// All coarser levels, from fine to coarse.
 pub(super) fn levels<const D: usize>(problem: &Problem<'_, D>) -> Vec<Level<D>> {
     let mut all: Vec<Level<D>> = Vec::new();
     let strong = if problem.cloud.layers.is_empty() { 0.0 } else { STRONG };
-    while all.len() < MOST_LEVELS {
+    while all.len() < MAX_LEVELS {
         let next = match all.last() {
             Some(last) => Level::new(last, &problem.signs, strong),
             None => Level::new(&Particles::new(problem), &problem.signs, strong),
@@ -91,7 +91,7 @@ pub(super) fn levels<const D: usize>(problem: &Problem<'_, D>) -> Vec<Level<D>> 
 }
 
 impl<const D: usize> Level<D> {
-    /// Groups of the rows of `finer`; nothing where there are few, or where they hardly see one another.
+    /// Groups the rows of `finer`; `None` when there are few, or when they are hardly coupled.
     fn new(finer: &impl Finer<D>, signs: &[Vector<D>], strong: f64) -> Option<Self> {
         let n = finer.n_rows();
         if n <= COARSEST {
@@ -150,7 +150,7 @@ impl<const D: usize> Level<D> {
     }
 }
 
-/// The edges of group `g`, those of its members added up.
+/// The couplings of group `g`: the sums of those of its members.
 fn gather<const D: usize>(
     finer: &impl Finer<D>,
     signs: &[Vector<D>],
@@ -169,7 +169,7 @@ fn gather<const D: usize>(
             match all.iter_mut().find(|a| a.other == other && a.transform == e.transform) {
                 Some(a) => a.moments = a.moments.plus(STIFFNESS, &moments),
                 None => {
-                    // the centre of the other group lies behind its member
+                    // shift from centre to centre: that of the members, corrected by the offsets of both
                     let mut shift = e.shift;
                     let behind = seen(signs, e.transform, &offset[e.other as usize]);
                     (0..D).for_each(|d| shift[d] += offset[i][d] - behind[d]);
@@ -182,7 +182,7 @@ fn gather<const D: usize>(
     all
 }
 
-/// An offset as it is seen under a transform.
+/// An offset under a transform.
 fn seen<const D: usize>(signs: &[Vector<D>], transform: u8, offset: &[f32; D]) -> [f32; D] {
     let mut seen = *offset;
     if transform != ITSELF {
@@ -213,7 +213,7 @@ impl<const D: usize> Finer<D> for Level<D> {
     }
 }
 
-/// The particles with the nearest one of those that share each wall.
+/// The particles, with the nearest one of those that share each wall.
 struct Particles<'a, const D: usize> {
     problem: &'a Problem<'a, D>,
     nearest: Vec<Option<Sharer>>,
@@ -230,7 +230,7 @@ impl<'a, const D: usize> Particles<'a, D> {
         Self { problem, nearest }
     }
 
-    /// The edge along which a particle with entry `own` for a wall meets one that sees the wall by `other`.
+    /// Coupling of a particle with the entry `own` for a wall to one that has the entry `other` for the same wall.
     fn along_wall(&self, row: u32, transform: u8, own: &Link<D>, other: &Link<D>, weight: f64) -> Edge<D> {
         let signs = &self.problem.signs;
         let own = part_of(&own.offset, 1.0);
@@ -245,7 +245,8 @@ impl<'a, const D: usize> Particles<'a, D> {
         let link = &problem.links.at(i, p);
         let w = link.other as usize - problem.n_fluid;
         let Some(nearest) = self.nearest[w] else { return };
-        // all components, where only that across the wall is held: stiffer than it is, and alike in all of them
+        // all components are coupled although the wall couples the normal one only: stiffer than necessary, but equal
+        // in all components
         let weight = |l: &Link<D>| l.weight * problem.walls[w].norm_squared();
         if nearest.p as usize != p {
             f(&self.along_wall(nearest.i, transform, link, &problem.link(&nearest), weight(link)));

@@ -1,4 +1,4 @@
-//! The rows of the multipliers, as sweeps over the particles see them.
+//! Rows of the system for the multipliers, as the sweeps over the particles use them.
 use std::ops::Range;
 
 use super::Problem;
@@ -26,7 +26,7 @@ impl<const D: usize> Grid<Row<D>> for Problem<'_, D> {
         self.factors.solve(i, r)
     }
 
-    /// Multipliers of the walls.
+    /// Computes the multipliers of the walls from those of the particles.
     fn follow(&self, b: &[Row<D>], x: &mut [Row<D>]) {
         let mut walls = vec![0.0; self.sharers.len()];
         sweep(&mut walls, |w| (b[self.n_fluid + w].share() - self.wall_row(w, x)) / self.shared[w]);

@@ -1,8 +1,9 @@
-//! Clouds that are their own mirror image.
+//! Clouds with mirror symmetry.
 //!
-//! A preconditioner whose groups and sweeps go by the numbers of the particles finds coefficients that are not symmetric where the
-//! cloud is, by as much as the iteration leaves. Its result is therefore averaged with its mirror image: for a symmetric right-hand
-//! side, which conjugate gradients keep, that is the preconditioner (M + R M R)/2.
+//! A preconditioner whose groups and sweeps depend on the numbering of the particles yields coefficients that violate
+//! the symmetry of a symmetric cloud by as much as the iteration tolerance. Its result is therefore averaged with its
+//! mirror image. For a symmetric right-hand side, which conjugate gradients preserve, this is the preconditioner (M + R
+//! M R)/2.
 use std::collections::HashMap;
 
 use super::field::Field;
@@ -11,24 +12,24 @@ use crate::math::Vector;
 use crate::math::parallel::sweep;
 use crate::math::reduce::sum;
 
-/// Part of the smallest spacing within which two places are the same.
+/// Fraction of the smallest spacing within which two positions coincide.
 const SAME: f64 = 1e-6;
-/// Relative difference of spacings that are the same.
+/// Relative difference within which two spacings are equal.
 const ALIKE: f64 = 1e-9;
 
-/// A plane across one axis that turns the cloud into itself.
+/// A plane normal to one axis about which the cloud is symmetric.
 pub(super) struct Mirror {
     axis: usize,
-    /// The particle that each one is turned into.
+    /// Index of the mirror image of each particle.
     partner: Vec<u32>,
 }
 
-/// All planes through the middle of the domain that turn the fluid particles of a cloud into themselves.
+/// All planes through the centre of the domain about which the fluid particles are symmetric.
 pub(super) fn mirrors<const D: usize>(cloud: &Cloud<D>) -> Vec<Mirror> {
     let n = cloud.n_fluid;
     let spacing = cloud.spacing[..n].iter().copied().fold(f64::INFINITY, f64::min);
     let (centre, step) = (cloud.tree.bounds().centre(), SAME * spacing);
-    // rounding is odd, so that mirror images have mirrored keys
+    // rounding is an odd function, so that mirror images have mirrored keys
     let key = |x: &Vector<D>| -> [i64; D] { std::array::from_fn(|d| ((x[d] - centre[d]) / step).round() as i64) };
     let places: HashMap<[i64; D], u32> = (0..n).map(|i| (key(&cloud.x[i]), i as u32)).collect();
     let partners = |axis: usize| {
@@ -45,20 +46,20 @@ pub(super) fn mirrors<const D: usize>(cloud: &Cloud<D>) -> Vec<Mirror> {
 }
 
 impl Mirror {
-    /// The mirror image of a field at particle `i`.
+    /// Value of the mirrored field at particle `i`.
     fn image<const D: usize, V: Field<D>>(&self, field: &[V], i: usize) -> V {
         let sign = Vector::from_fn(|d| if d == self.axis { -1.0 } else { 1.0 });
         field[self.partner[i] as usize].mirrored(&sign)
     }
 
-    /// True where a field is its own mirror image.
+    /// True when a field is symmetric.
     pub(super) fn keeps<const D: usize, V: Field<D>>(&self, field: &[V]) -> bool {
         let square = |v: V| v.dot(&v);
         let miss = sum(field.len(), |i| square(field[i].plus(-1.0, &self.image(field, i))));
         miss <= V::SYMMETRIC * V::SYMMETRIC * sum(field.len(), |i| square(field[i]))
     }
 
-    /// The mean of a field and its mirror image; `other` is storage.
+    /// Replaces a field by the mean of itself and its mirror image; `other` is work space.
     pub(super) fn average<const D: usize, V: Field<D>>(&self, field: &mut [V], other: &mut [V]) {
         sweep(other, |i| {
             let twice = field[i].plus(1.0, &self.image(field, i));

@@ -1,4 +1,4 @@
-//! Walls among the conditions: their area vectors are shared out among the particles in front of them.
+//! Walls in the constrained problem: their area vectors are shared among the fluid particles in front of them.
 use super::{Problem, Sharer};
 use crate::cloud::coefficient_unknowns::Link;
 use crate::cloud::multipliers::{Row, part_of};
@@ -7,20 +7,20 @@ use crate::math::Vector;
 use crate::math::parallel::sweep_slots;
 
 impl<const D: usize> Problem<'_, D> {
-    /// W Aᵀ λ of a wall entry of row `i`: the change of its area vector.
+    /// Change of the area vector of a wall entry of row `i`: W Aᵀ λ.
     #[inline(never)]
     pub(super) fn wall_change(&self, i: usize, link: &Link<D>, y: &[Row<D>]) -> Vector<D> {
         let a = self.wall(link);
         a * (link.weight * (along(&y[i], link, &a) + y[link.other as usize].share()))
     }
 
-    /// The share that belongs to an area vector of a wall entry.
+    /// Share β that corresponds to the area vector of a wall entry.
     pub(super) fn share(&self, link: &Link<D>, area: &Vector<D>) -> f64 {
         let a = self.wall(link);
         area.dot(&a) / a.norm_squared().max(f64::MIN_POSITIVE)
     }
 
-    /// (A W Aᵀ + ε) y in the row of wall `w`.
+    /// The product (A W Aᵀ + ε) y in the row of wall `w`.
     pub(super) fn wall_row(&self, w: usize, y: &[Row<D>]) -> f64 {
         let share = |s: &Sharer| {
             let link = self.link(s);
@@ -29,7 +29,8 @@ impl<const D: usize> Problem<'_, D> {
         self.sharers[w].iter().map(share).sum()
     }
 
-    /// Changes the shares as multipliers of the particles in `y` ask for; that of each wall is the one with which its shares sum to one.
+    /// Updates the shares for the multipliers `y` of the particles; the multiplier of each wall makes its shares sum to
+    /// one.
     pub(super) fn share_out(&mut self, y: &[Row<D>]) {
         let mut sharers = std::mem::take(&mut self.sharers);
         sweep_slots(&mut sharers, |_, all| {
@@ -44,7 +45,7 @@ impl<const D: usize> Problem<'_, D> {
         self.sharers = sharers;
     }
 
-    /// The pieces of wall that bound fluid particles, in the order of their entries.
+    /// The wall faces of the fluid particles, in the order of their entries.
     pub(super) fn wall_faces(&self) -> Vec<WallFace<D>> {
         let mut all: Vec<&Sharer> = self.sharers.iter().flatten().collect();
         all.sort_unstable_by_key(|s| s.p);
@@ -56,7 +57,7 @@ impl<const D: usize> Problem<'_, D> {
     }
 }
 
-/// The field of `own` at the other end of an entry, along the area vector there.
+/// Component of the field of `own` along the area vector at the other end of an entry.
 pub(super) fn along<const D: usize>(own: &Row<D>, link: &Link<D>, area: &Vector<D>) -> f64 {
     let field = own.at(&part_of(&link.offset, 1.0));
     (0..D).map(|d| f64::from(field[d]) * area[d]).sum()

@@ -1,30 +1,30 @@
-//! The g-method: a check of the p-k method that follows no branches.
+//! The g-method: a check of the p-k method that does not follow branches.
 //!
-//! Forces of a motion that grows are those of the harmonic one and their first change with growth, Q(γ + iκ) ≈ Q(iκ) + γ Q'(iκ), where
-//! Q' = −i dQ/dκ (Chen, AIAA Journal 38, 2000, doi:10.2514/2.1171). In coordinates of the natural modes, at the speed u and the dynamic
-//! pressure p, motions with the rate λ = u (γ + iκ) obey
+//! The forces of a growing motion are those of the harmonic motion with a first-order correction, Q(γ + iκ) ≈ Q(iκ) + γ
+//! Q'(iκ), where Q' = −i dQ/dκ (Chen, AIAA Journal 38, 2000, doi:10.2514/2.1171). In modal coordinates, at the speed u
+//! and the dynamic pressure p, motions with the rate λ = u (γ + iκ) satisfy
 //!
 //! [γ² u² + γ (2iκ u² + u C − p Q') − κ² u² + iκ u C + K − p Q(iκ)] v = 0,
 //!
-//! a linear eigenproblem for γ at each κ; those motions are real whose γ is. At the neutral point both methods agree in theory, so that
-//! what is left between them is what interpolation and following did.
+//! a quadratic eigenvalue problem for γ at each κ; a solution is a motion when its γ is real. Both methods agree at a
+//! point of neutral stability in theory, so that a difference shows errors of interpolation and branch following.
 use num_complex::Complex64;
 
 use super::{Crossing, Flutter, Kind, Modes, ZERO, least};
 use crate::math::eigenvalues::eigenvalues;
 
-/// Part of κ over which forces are differentiated.
+/// Fraction of κ over which forces are differentiated.
 const BESIDE: f64 = 1e-4;
-/// Part of x on either side of a crossing between which it is sought.
+/// Relative distance in x from a flutter point within which the neutral motion is searched.
 const WITHIN: f64 = 0.02;
-/// Secant steps for κ and for x, at most.
+/// Greatest number of secant steps for κ and for x.
 const SECANT: usize = 60;
-/// Change of κ or x, over its size, that ends them.
+/// Relative change of κ or x at which the iteration ends.
 const ENOUGH: f64 = 1e-12;
 
 impl Flutter<'_> {
-    /// x at which the g-method finds the motion of a crossing neutral; `None` at divergence, and where it does not find it within two per
-    /// cent.
+    /// x at which the motion of a flutter point is neutral by the g-method; `None` for divergence, and where no such
+    /// motion is found within two per cent.
     pub fn damping_perturbation(&self, crossing: &Crossing) -> Option<f64> {
         let modes = self.modes.as_ref().filter(|_| crossing.kind != Kind::Divergence)?;
         let growth = |x: f64| self.growth(modes, x, crossing.kappa);
@@ -39,7 +39,7 @@ impl Flutter<'_> {
             let side = usize::from(size * sizes[0] <= 0.0);
             let moved = (x - ends[side]).abs();
             (ends[side], sizes[side]) = (x, size);
-            // the other end weighs half, so that it moves too (Illinois)
+            // the value at the other end is halved, so that this end moves too (Illinois method)
             sizes[1 - side] *= 0.5;
             if size == 0.0 || moved <= ENOUGH * x {
                 return Some(x);
@@ -48,7 +48,7 @@ impl Flutter<'_> {
         None
     }
 
-    /// γ of the motion near κ.
+    /// Growth γ of the motion near κ.
     fn growth(&self, modes: &Modes, x: f64, near: f64) -> Option<f64> {
         let (mut kappa, mut gamma) = (near, ZERO);
         let mut before = None::<[f64; 2]>;
@@ -59,7 +59,7 @@ impl Flutter<'_> {
             }
             let step = before.map(|[k, im]| -gamma.im * (kappa - k) / (gamma.im - im));
             before = Some([kappa, gamma.im]);
-            // κ + Im γ is the frequency that this motion has
+            // κ + Im γ is the frequency of this motion
             kappa += step.filter(|s| s.abs() < 0.5 * kappa).unwrap_or(gamma.im);
             if !(kappa > 0.0) {
                 return None;
@@ -68,7 +68,7 @@ impl Flutter<'_> {
         None
     }
 
-    /// The γ at κ that is nearest to the real number `to`.
+    /// The eigenvalue γ at κ that is nearest to the real number `to`.
     fn nearest(&self, modes: &Modes, x: f64, kappa: f64, to: f64) -> Option<Complex64> {
         let (n, speed, pressure) = (modes.n, self.speed(x), self.pressure(x));
         let step = BESIDE * kappa;
@@ -94,7 +94,7 @@ impl Flutter<'_> {
     }
 }
 
-/// Eigenvalues of a complex matrix: those of the real matrix of its parts, that has their conjugates too.
+/// Eigenvalues of a complex matrix, from the real matrix of its parts, which also has their conjugates.
 fn spectrum(matrix: &[Complex64], n: usize) -> Option<Vec<Complex64>> {
     let size = 2 * n;
     let entry = |k: usize| {
@@ -111,7 +111,7 @@ fn spectrum(matrix: &[Complex64], n: usize) -> Option<Vec<Complex64>> {
     Some(eigenvalues(&real, size)?.into_iter().filter(own).collect())
 }
 
-/// |det(A − z)|.
+/// The magnitude |det(A − z)|.
 fn singular(matrix: &[Complex64], n: usize, z: Complex64) -> f64 {
     let mut a = matrix.to_vec();
     (0..n).for_each(|k| a[k * n + k] -= z);

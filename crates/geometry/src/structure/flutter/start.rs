@@ -1,37 +1,43 @@
-//! Motions that grow from the start: at every density, however small it is.
+//! Motions that are unstable from the start: at every density, however small.
 //!
-//! To the first order in the dynamic pressure p, forces move the root iω of a natural mode φ with φᵀMφ = 1 by
+//! To first order in the dynamic pressure p, the aerodynamic forces shift the root iω of a natural mode φ with φᵀMφ = 1
+//! by
 //!
 //! dλ = p φᵀ Q(iκ) φ/(2iω), κ = ω/u,
 //!
-//! where the speed u does not go to zero with p. Growth vanishes with p as all of dλ does: a motion grows where the real part of dλ is more than a
-//! small part of dλ, however small both are. Such a motion is neutral at p = 0, and its flutter begins there. Structural damping, which does
-//! not vanish with p, moves that to a density greater than zero, and branches that grow at the lowest density are followed to lower ones so that it
-//! is found.
+//! where the speed u does not vanish with p. The growth rate vanishes with p together with dλ. A motion is unstable
+//! where the real part of dλ exceeds a small fraction of |dλ|, however small both are. Such a motion is neutral at p =
+//! 0, and its flutter point lies there. Structural damping, which does not vanish with p, moves it to a positive
+//! density. Branches that are unstable at the lowest density are therefore followed to lower densities.
 //!
-//! Limits: at constant density κ rises without end as the speed goes to zero, and forces there are not known. No crossing is told at a speed of
+//! Limits: at constant density, κ increases without bound as the speed vanishes, and forces are not known there. No
+//! flutter point is reported at zero speed then; [`Flutter::grows_from`] tells which motions are unstable from the
+//! first reported point on.
 //! zero then: [`Flutter::grows_from`] says which motions grow from the first point on that is told.
 use num_complex::Complex64;
 
 use super::{Branch, Crossing, FIRST, Flutter, Kind, Modes, NEUTRAL, Place, Point, Root, Varied, ZERO, growth};
 
-/// Part that growth must have in what forces do to a root, so that it is growth beyond doubt: forces that are computed miss as much.
+/// Smallest ratio of growth rate and shift of the root for certain instability; the error of computed forces is of this
+/// order.
 const SURE: f64 = 1e-3;
-/// The same of what the largest of all forces would do: a mode that hardly feels the stream has the errors of the others.
+/// Smallest ratio of growth rate and the shift that the largest of all forces would cause: a mode that is hardly
+/// excited by the stream contains the errors of the others.
 const FELT: f64 = 1e-4;
-/// Change of the root at the lowest density, over its size, when it is followed from lower ones: more is that of another branch.
+/// Greatest relative change of the root at the lowest density when it is followed from lower ones; a greater one means
+/// another branch.
 const SAME: f64 = 1e-6;
 
 impl Flutter<'_> {
-    /// Place of the first of the points of natural mode `mode`, in rising order, at which it grows beyond doubt, where it does not decay
-    /// before; `None` where it decays first or never grows.
+    /// Index of the first of the ascending points of natural mode `mode` at which it is unstable for certain and before
+    /// which it does not decay; `None` where it decays first or is never unstable.
     pub fn grows_from(&self, mode: usize, points: &[Point]) -> Option<usize> {
         let modes = self.modes.as_ref()?;
         let mut growing = points.iter().take_while(|p| growth(p.lambda) > NEUTRAL);
         growing.position(|p| self.surely_grows(modes, mode, p))
     }
 
-    /// True where growth is more than errors of the forces make of none.
+    /// True where the growth rate exceeds the effect of errors of the forces.
     fn surely_grows(&self, modes: &Modes, mode: usize, point: &Point) -> bool {
         let (rate, size) = (point.lambda.re, point.lambda.norm());
         let Some(forces) = self.modal(modes, point.lambda.im / point.speed) else { return false };
@@ -41,7 +47,8 @@ impl Flutter<'_> {
         rate > SURE * moved && rate > FELT * would_move
     }
 
-    /// Flutter that has begun where the branch of natural mode `mode` begins: at zero, or where growth ceases to be in doubt.
+    /// Flutter point at the start of the branch of natural mode `mode`: at zero, or where the instability ceases to be
+    /// certain.
     pub(super) fn begun_at_the_start(&self, modes: &Modes, mode: usize, branch: &[Point]) -> Option<Crossing> {
         if let Varied::Speed = self.varied {
             return None;
@@ -56,11 +63,12 @@ impl Flutter<'_> {
         Some(Crossing { kind, branch, mode, x, speed, pressure, frequency, kappa, shape })
     }
 
-    /// The roots of natural mode `mode` from lower densities on to its first one, `start`, that one included; `None` where it does not grow
-    /// there, where the speed is varied, and where they are those of another branch.
+    /// Roots of natural mode `mode` from lower densities up to and including its first one, `start`; `None` where it is
+    /// not unstable there, where the speed is varied, and where the roots belong to another branch.
     pub(super) fn followed_from_below(&self, modes: &Modes, mode: usize, start: &Root) -> Option<Vec<Root>> {
         let varied = matches!(self.varied, Varied::Pressure(_));
-        // the root of a mode without stiffness goes to zero with the pressure, and its damping to a constant part of it or to zero
+        // the root of a mode without stiffness vanishes with the pressure, and its damping ratio tends to a constant or
+        // to zero
         let applies = varied && growth(start.lambda) > NEUTRAL && !modes.rigid().contains(&mode);
         let (mut x, last) = (FIRST * start.place.x, start.place.x);
         let mut roots = vec![self.begin(modes, mode, x).filter(|_| applies)?];
@@ -71,14 +79,14 @@ impl Flutter<'_> {
             x = if arrived { next } else { return None };
         }
         let found = roots.last()?.lambda;
-        // where round-off hides growth it hides decay as well
+        // where round-off hides growth, it hides decay too
         let hidden = roots.iter().take_while(|root| growth(root.lambda).abs() <= NEUTRAL).count();
         roots.drain(..hidden);
         ((found - start.lambda).norm() <= SAME * start.lambda.norm()).then_some(roots)
     }
 }
 
-/// λ of a natural mode without damping.
+/// Root λ of an undamped natural mode.
 fn natural(modes: &Modes, mode: usize) -> Complex64 {
     let is_rigid = modes.rigid().contains(&mode);
     let square = modes.squares.get(mode).filter(|_| !is_rigid);

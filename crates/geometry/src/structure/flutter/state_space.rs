@@ -1,65 +1,68 @@
-//! A structure in a stream as a linear system of first order, for those who design controls.
+//! A structure in a stream as a linear state-space system, for control design.
 //!
-//! Forces that are known by frequency become rational functions with lags (Roger, AGARD-CP-228, 1977),
+//! Forces that are known as functions of frequency are approximated by rational functions with lags (Roger,
+//! AGARD-CP-228, 1977),
 //!
 //! Q(s) ≈ A₀ + A₁ s + A₂ s² + Σ_l B_l s/(s + β_l), s = λ/u,
 //!
-//! A₀ = Q(0), the other matrices by least squares over frequencies for each entry, lags β_l in geometric rows of which the best is taken.
-//! At the speed u and the dynamic pressure p (both over those of the reference) the states are q, q' and r_l with r_l' + u β_l r_l = q':
+//! where A₀ = Q(0) and the other matrices follow by least squares over frequencies for each entry. The lags β_l form a
+//! geometric sequence; the best of several sequences is used. At the speed u and the dynamic pressure p (both relative
+//! to the reference), the states are q, q' and r_l with r_l' + u β_l r_l = q':
 //!
 //! (M − p/u² A₂) q'' = −(K − p A₀) q − (C − p/u A₁) q' + p Σ B_l r_l + f.
 //!
-//! Limits: forces of fast growth or decay are continued, not known; far above the frequencies fitted s² decides.
+//! Limits: forces of rapid growth or decay are extrapolated. Far above the fitted frequencies the term with s²
+//! dominates.
 use num_complex::Complex64;
 
 use super::super::Matrices;
 use crate::math::dense::Factors;
 use crate::math::singular::Singular;
 
-/// Frequencies that are fitted.
+/// Number of frequencies in the fit.
 const SAMPLES: usize = 60;
-/// Lags, at least and at most.
+/// Minimum and maximum number of lags.
 const LAGS: [usize; 2] = [2, 8];
-/// First and last lag over the highest frequency: those that are tried.
+/// Trial values of the first and the last lag, relative to the highest frequency.
 const FIRST: [f64; 4] = [0.02, 0.05, 0.12, 0.3];
 const LAST: [f64; 3] = [0.5, 1.0, 2.0];
-/// Misfit, over the largest modulus of an entry, for which no more lags are taken.
+/// Misfit relative to the largest modulus of an entry at which no more lags are added.
 const ENOUGH: f64 = 1e-3;
-/// Singular value, over the largest, that counts as zero.
+/// Singular value relative to the largest below which it counts as zero.
 const NULL: f64 = 1e-11;
 
-/// Forces as rational functions of s.
+/// Rational approximation of the aerodynamic forces as functions of s (Roger).
 #[derive(Clone, Debug, PartialEq)]
 pub struct Roger {
-    /// A₀, A₁ and A₂; rows one after another.
+    /// Matrices A₀, A₁ and A₂; row by row.
     pub polynomial: [Vec<f64>; 3],
-    /// β_l.
+    /// Lags β_l.
     pub lags: Vec<f64>,
-    /// B_l.
+    /// Matrices B_l; row by row.
     pub lagged: Vec<Vec<f64>>,
-    /// Worst misfit over the frequencies fitted, over the largest modulus of the entry.
+    /// Largest misfit over the fitted frequencies, relative to the largest modulus of the entry.
     pub misfit: f64,
 }
 
-/// x' = A x + B f, y = C x + D f; rows one after another.
+/// State-space system x' = A x + B f, y = C x + D f; matrices row by row.
 #[derive(Clone, Debug, PartialEq)]
 pub struct StateSpace {
-    /// A, square.
+    /// System matrix A, square.
     pub a: Vec<f64>,
-    /// B, a column for the force on each coordinate.
+    /// Input matrix B, with a column for the force on each coordinate.
     pub b: Vec<f64>,
-    /// C: coordinates, then their rates.
+    /// Output matrix C for the coordinates, followed by their rates.
     pub c: Vec<f64>,
-    /// D, zero.
+    /// Feedthrough matrix D, which is zero.
     pub d: Vec<f64>,
     /// Number of states.
     pub states: usize,
 }
 
 impl Roger {
-    /// Functions with the values that `forces` gives at s = iκ, 0 ≤ κ ≤ `highest`; `None` when these are not finite.
+    /// Fits the values of `forces` at s = iκ for 0 ≤ κ ≤ `highest`; `None` when these are not finite.
     pub fn fit(forces: &dyn Fn(f64) -> Vec<Complex64>, highest: f64) -> Option<Self> {
-        // close to one another where lags act
+        // dense at low frequencies, where the lags act
         let kappa = |m: usize| highest * (m as f64 / SAMPLES as f64).powf(1.5);
         let samples: Vec<(f64, Vec<Complex64>)> = (0..=SAMPLES).map(|m| (kappa(m), forces(kappa(m)))).collect();
         let whole = samples.iter().all(|s| s.1.len() == samples[0].1.len() && s.1.iter().all(|f| f.is_finite()));
@@ -123,8 +126,8 @@ impl Roger {
         Self { polynomial: [still, first, second], lags, lagged, misfit }
     }
 
-    /// The system at the speed and the dynamic pressure over those of the reference, in its time; `None` where the masses, those of the
-    /// gas among them, are singular.
+    /// The state-space system at the given speed and dynamic pressure, both relative to the reference, in the time of
+    /// the reference; `None` where the mass matrix, which includes aerodynamic terms, is singular.
     pub fn system(&self, structure: &Matrices, speed: f64, pressure: f64) -> Option<StateSpace> {
         let n = structure.mass.len().isqrt();
         let states = n * (2 + self.lags.len());
@@ -133,7 +136,7 @@ impl Roger {
         let mass = Factors::new(n, less(&structure.mass, second, pressure / (speed * speed)))?;
         let stiffness = less(&structure.stiffness, still, pressure);
         let damping = less(&structure.damping, first, pressure / speed);
-        // what each state does to M q''
+        // contribution of each state to M q''
         let push = |i: usize, state: usize| {
             let e = i * n + state % n;
             match state / n {
@@ -169,8 +172,8 @@ impl Roger {
 }
 
 impl StateSpace {
-    /// The same where a unit of time is `1/rate` of the former one, rates of `n` coordinates included, and forces are `force` times as
-    /// many units.
+    /// The system in other units: the unit of time becomes `1/rate` of the present one, which also scales the rates of
+    /// the `n` coordinates, and the unit of force is divided by `force`.
     pub fn in_units(mut self, n: usize, rate: f64, force: f64) -> Self {
         let scale = |state: usize| if (n..2 * n).contains(&state) { rate } else { 1.0 };
         for (k, a) in self.a.iter_mut().enumerate() {

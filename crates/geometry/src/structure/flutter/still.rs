@@ -1,13 +1,14 @@
-//! Motions that do not oscillate: divergence, and what becomes of modes whose frequency is zero.
+//! Non-oscillatory motions: divergence, and modes whose frequency has vanished.
 //!
-//! Real roots λ have the forces of steady displacements. In coordinates of the natural modes they are those of λ² + C λ + A(p) = 0 with
-//! A(p) = K − p Q(0) at the dynamic pressure p: without damping λ² = −a for each real eigenvalue a of A, and where one becomes negative there
-//! is divergence, K q = p Q(0) q.
+//! Real roots λ have the aerodynamic forces of steady displacements. In modal coordinates they satisfy λ² + C λ + A(p)
+//! = 0 with A(p) = K − p Q(0) at the dynamic pressure p. Without damping, λ² = −a for each real eigenvalue a of A.
+//! Divergence, K q = p Q(0) q, occurs where one of them becomes negative.
 //!
-//! A coordinate without stiffness has a ∝ p: it diverges at any speed, p = 0, or the stream holds it. What neither structure nor stream
-//! feel, as the place of a free body, stays neutral at every speed. Those displacements are taken out of A, which leaves the others
-//! as they are when the free body accelerates under its load (inertia relief; Rodden and Love 1985, doi:10.2514/3.45236). A spring there,
-//! however soft it is, bears the load instead: the divergence of a free body is not the limit of that of a softly held one.
+//! A coordinate without stiffness has a ∝ p: either it diverges at any speed (p = 0), or the stream provides stiffness.
+//! Displacements that cause neither elastic nor aerodynamic forces, such as the position of a free body, are neutral at
+//! every speed. They are eliminated from A such that the free body accelerates under its load (inertia relief; Rodden
+//! and Love 1985, doi:10.2514/3.45236). A spring, however soft, would carry the load instead: the divergence of a free
+//! body is not the limit of that of a softly supported one.
 use std::ops::Range;
 
 use num_complex::Complex64;
@@ -17,30 +18,32 @@ use crate::math::dense::Factors;
 use crate::math::eigenvalues::eigenvalues;
 use crate::math::singular::Singular;
 
-/// Force of a steady displacement, over the largest of all, that is what computation leaves of none.
+/// Aerodynamic force of a steady displacement, relative to the largest one, that counts as zero: the error of computed
+/// forces.
 const UNFELT: f64 = 1e-3;
-/// Part of the dynamic pressure on either side of a crossing at which growing motions are counted.
+/// Relative distance in dynamic pressure from a boundary at which growing motions are counted.
 const BESIDE: f64 = 1e-6;
-/// Rate of a motion, over the fastest, below which it neither grows nor decays: the root of round-off.
+/// Rate of a motion relative to the fastest one below which it is neutral: the root of round-off.
 const SLOW: f64 = 1e-7;
 
-/// Motions that do not oscillate, along x.
+/// Non-oscillatory motions as functions of x.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct StillMotions {
-    /// For each divergence, by rising speed of it, the motion that is neutral there and grows after it, or before it.
+    /// For each divergence, in ascending order of speed, the motion that is neutral there and unstable above it, or
+    /// below it.
     pub growing: Vec<Vec<Point>>,
-    /// For each mode what it does where it has ceased to oscillate: decay, growth, or nothing where neither structure nor stream feel it.
+    /// For each mode, its motion after it has ceased to oscillate: decay or growth; empty where it causes no force.
     pub resting: Vec<Vec<Point>>,
 }
 
-/// The equations of steady displacements that structure or stream feel.
+/// The equations of the steady displacements that cause elastic or aerodynamic forces.
 pub(super) struct Felt {
-    /// Number of displacements, those without stiffness first.
+    /// Number of displacements; those without stiffness come first.
     n: usize,
     free: usize,
-    /// Displacements in modes, one after another.
+    /// The displacements in modal coordinates, one after another.
     basis: Vec<Vec<f64>>,
-    /// What neither structure nor stream feel, in modes.
+    /// Displacements that cause no forces, in modal coordinates.
     unfelt: Vec<Vec<f64>>,
     stiffness: Vec<f64>,
     forces: Vec<f64>,
@@ -48,7 +51,7 @@ pub(super) struct Felt {
 }
 
 impl Flutter<'_> {
-    /// Divergence below `upto`.
+    /// Divergence points below `upto`.
     pub(super) fn divergence(&self, modes: &Modes, upto: f64) -> Vec<Crossing> {
         let Some(felt) = self.felt(modes) else { return Vec::new() };
         let free = felt.free_growth();
@@ -68,10 +71,10 @@ impl Flutter<'_> {
         Crossing { kind, branch, mode, x, speed, pressure, frequency: 0.0, kappa: 0.0, shape }
     }
 
-    /// Motions that do not oscillate up to `upto`, beside the `branches` of those that do.
+    /// Non-oscillatory motions up to `upto`, in addition to the oscillatory `branches`.
     ///
-    /// The slowest of those that grow are neutral at a divergence: after it, or before it where they cease to grow there. Those that grow
-    /// faster, and all that decay, belong to modes whose frequency has vanished.
+    /// The slowest growing motion is neutral at a divergence point: above it, or below it where the growth ends. Faster
+    /// growing motions and all decaying ones belong to modes whose frequency has vanished.
     pub fn still_motions(&self, branches: &[Vec<Point>], upto: f64) -> StillMotions {
         let mut all = StillMotions { growing: Vec::new(), resting: vec![Vec::new(); branches.len()] };
         let Some((modes, felt)) = self.modes.as_ref().and_then(|m| Some((m, self.felt(m)?))) else { return all };
@@ -84,14 +87,14 @@ impl Flutter<'_> {
         for step in 1..=STEPS as usize {
             let x = upto * step as f64 / STEPS;
             let (growing, decaying) = felt.rates(self.pressure(x));
-            // the slowest first: what ends next, then what began last
+            // the slowest first: the one that ends next, then the one that started last
             let ends = (0..neutral.len()).filter(|k| ending(k, x));
             let own = (0..neutral.len()).rev().filter(|k| begun(k, x)).collect::<Vec<_>>();
             let room = growing.len().saturating_sub(own.len());
             let own: Vec<usize> = ends.take(room).chain(own).collect();
             let (fast, slow) = growing.split_at(growing.len().saturating_sub(own.len()));
             own.iter().zip(slow.iter().rev()).for_each(|(k, rate)| all.growing[*k].push(point(x, *rate)));
-            // the first to stop oscillating is the fastest
+            // the mode that ceased to oscillate first is the fastest
             let last = |m: usize| branches[m].last().map_or((0.0, false), |p| (p.x, p.lambda.re > 0.0));
             let mut still: Vec<usize> = (0..branches.len()).filter(|m| last(*m).0 < x).collect();
             still.sort_by(|a, b| last(*a).0.total_cmp(&last(*b).0));
@@ -105,13 +108,13 @@ impl Flutter<'_> {
         all
     }
 
-    /// Displacements that neither structure nor stream feel, in coordinates: a free body is displaced so.
+    /// Displacements that cause neither elastic nor aerodynamic forces, in coordinates: displacements of a free body.
     pub fn free_displacements(&self) -> Vec<Vec<Complex64>> {
         let Some((modes, felt)) = self.modes.as_ref().and_then(|m| Some((m, self.felt(m)?))) else { return Vec::new() };
         felt.unfelt.iter().map(|v| modes.coordinates(&v.iter().map(|q| (*q).into()).collect::<Vec<_>>())).collect()
     }
 
-    /// λ of each natural mode where nothing flows, by rising frequency without damping.
+    /// Roots λ of the natural modes in a vacuum, in ascending order of the undamped frequency.
     pub fn in_still_air(&self) -> Vec<Complex64> {
         let Some(modes) = &self.modes else { return Vec::new() };
         let n = modes.n;
@@ -132,7 +135,7 @@ impl Flutter<'_> {
             .collect()
     }
 
-    /// `None` where there are no forces at rest.
+    /// The equations of steady displacements; `None` where the forces at zero frequency are not finite.
     fn felt(&self, modes: &Modes) -> Option<Felt> {
         let forces: Vec<f64> = self.modal(modes, 0.0)?.iter().map(|f| f.re).collect();
         Some(Felt::new(modes, &forces))
@@ -159,7 +162,7 @@ impl Felt {
                 |a: &Vec<f64>, b: &Vec<f64>| (0..n * n).map(|e| a[e / n] * entry(e / n, e % n) * b[e % n]).sum::<f64>();
             basis.iter().flat_map(|a| basis.iter().map(move |b| product(a, b))).collect()
         };
-        // what round-off leaves of no stiffness is none
+        // stiffness due to round-off is set to zero
         let is_rigid = |k: usize| rigid.contains(&k);
         let stiffness = project(&|i, j| if is_rigid(i) || is_rigid(j) { 0.0 } else { modes.stiffness[i * n + j].re });
         let damping = project(&|i, j| modes.damping[i * n + j].re);
@@ -167,7 +170,7 @@ impl Felt {
         Self { n: basis.len(), free, basis, unfelt, stiffness, forces, damping }
     }
 
-    /// Rows and columns `of` the forces.
+    /// The block `rows` × `columns` of the forces.
     fn block(&self, rows: Range<usize>, columns: Range<usize>) -> Vec<f64> {
         rows.flat_map(|i| columns.clone().map(move |j| (i, j))).map(|(i, j)| self.forces[i * self.n + j]).collect()
     }
@@ -187,8 +190,8 @@ impl Felt {
         growing.map(shape).collect()
     }
 
-    /// Positive dynamic pressures at which a displacement is in balance: 1/p are the positive eigenvalues of K⁻¹ Q, where displacements
-    /// without stiffness follow the others so that no force is on them.
+    /// Positive dynamic pressures at which a displacement is in equilibrium. 1/p are the positive eigenvalues of K⁻¹ Q,
+    /// where displacements without stiffness are eliminated by the condition that no force acts on them.
     fn neutral_pressures(&self) -> Vec<f64> {
         let (m, stiff) = (self.free, self.n - self.free);
         let stiffness: Vec<f64> =
@@ -221,30 +224,30 @@ impl Felt {
         real.map(|v| v.re.recip()).collect()
     }
 
-    /// K − p Q.
+    /// The matrix K − p Q.
     fn at(&self, pressure: f64) -> Vec<f64> {
         self.stiffness.iter().zip(&self.forces).map(|(k, q)| k - pressure * q).collect()
     }
 
-    /// Negative eigenvalues of K − p Q.
+    /// Number of negative eigenvalues of K − p Q.
     fn negative(&self, pressure: f64) -> usize {
         let values = eigenvalues(&self.at(pressure), self.n).unwrap_or_default();
         values.iter().filter(|v| v.re < 0.0 && v.im.abs() <= REAL * -v.re).count()
     }
 
-    /// True where a motion begins to grow at the dynamic pressure `p` at which it is neutral, false where it ceases to.
+    /// True where a motion becomes unstable with increasing dynamic pressure at `p`, false where it becomes stable.
     fn begins_at(&self, p: f64) -> bool {
         let [before, after] = [1.0 - BESIDE, 1.0 + BESIDE].map(|part| self.negative(part * p));
         p == 0.0 || before <= after
     }
 
-    /// The displacement that K − p Q does least to.
+    /// The displacement for which K − p Q is softest.
     fn softest(&self, pressure: f64) -> Vec<f64> {
         let a = self.at(pressure);
         null((0..self.n).map(|j| (0..self.n).map(|i| a[i * self.n + j]).collect()).collect())
     }
 
-    /// Rates of motions that grow, the fastest first, and of those that decay, the fastest first.
+    /// Rates of the growing motions and of the decaying motions, the fastest first in both lists.
     fn rates(&self, pressure: f64) -> (Vec<f64>, Vec<f64>) {
         let all = quadratic(&self.at(pressure), &self.damping, self.n);
         let slow = SLOW * all.iter().map(|z| z.norm()).fold(0.0, f64::max);
@@ -255,7 +258,7 @@ impl Felt {
         (growing, decaying)
     }
 
-    /// A displacement in natural modes.
+    /// A displacement in modal coordinates.
     fn in_modes(&self, modes: &Modes, shape: &[f64]) -> Vec<Complex64> {
         let one = |k: usize| self.basis.iter().zip(shape).map(|(b, q)| b[k] * q).sum::<f64>();
         (0..modes.n).map(|k| one(k).into()).collect()
@@ -263,7 +266,7 @@ impl Felt {
 }
 
 impl Modes {
-    /// Modes without stiffness.
+    /// Range of the modes without stiffness.
     pub(super) fn rigid(&self) -> Range<usize> {
         let least = RIGID * self.squares.iter().fold(0.0f64, |most, square| most.max(square.abs()));
         let below = |limit: f64| self.squares.iter().filter(|square| **square < limit).count();
@@ -271,14 +274,14 @@ impl Modes {
     }
 }
 
-/// The vector that the matrix with these columns does least to.
+/// The vector of unit length whose product with the matrix of these columns is smallest.
 fn null(columns: Vec<Vec<f64>>) -> Vec<f64> {
     let mut singular = Singular::of(columns);
     let place = least(singular.squares().into_iter());
     singular.right.swap_remove(place)
 }
 
-/// λ of λ² + C λ + A = 0.
+/// Roots λ of λ² + C λ + A = 0.
 fn quadratic(a: &[f64], damping: &[f64], n: usize) -> Vec<Complex64> {
     let size = 2 * n;
     let mut matrix = vec![0.0; size * size];

@@ -1,18 +1,18 @@
-//! What is varied of a stream at one Mach number, where motions are sought that neither grow nor decay: x, and speed and dynamic pressure
-//! there.
+//! The quantity x of the stream that is varied in a flutter analysis, and speed and dynamic pressure as functions of
+//! it.
 
-/// What x is: how the stream is varied at one Mach number.
+/// Varied quantity x of the stream at constant Mach number.
 #[derive(Clone, Copy)]
 pub enum Varied<'a> {
-    /// The speed over that of the reference, at constant density.
+    /// Speed ratio U/U_ref at constant density.
     Speed,
-    /// The dynamic pressure over that of the reference; the speed over that of the reference is a function of it, one where the sound
-    /// speed is constant.
+    /// Dynamic pressure divided by that of the reference. The speed ratio is the given function of it, which is one
+    /// where the sound speed is constant.
     Pressure(&'a dyn Fn(f64) -> f64),
 }
 
 impl Varied<'_> {
-    /// U/U_ref at x.
+    /// Speed ratio U/U_ref at x.
     pub fn speed(&self, x: f64) -> f64 {
         match self {
             Self::Speed => x,
@@ -20,7 +20,7 @@ impl Varied<'_> {
         }
     }
 
-    /// Dynamic pressure over that of the reference at x.
+    /// Dynamic pressure at x divided by that of the reference.
     pub fn pressure(&self, x: f64) -> f64 {
         match self {
             Self::Speed => x * x,
@@ -28,7 +28,7 @@ impl Varied<'_> {
         }
     }
 
-    /// x where the dynamic pressure over that of the reference is `pressure`.
+    /// x at which the dynamic pressure ratio is `pressure`.
     pub fn place(&self, pressure: f64) -> f64 {
         match self {
             Self::Speed => pressure.sqrt(),

@@ -1,63 +1,66 @@
-//! The matrices of a body among splines: stiffness, inertia, and the springs that hold it.
+//! Matrices of a body in the spline basis: stiffness, mass, and the springs of the supports.
 use super::basis::{Axis, LIVE};
 use super::points::{FOUR, Point, Rays, of_surface};
-use super::{Body, Held, Mirror, Unfit};
+use super::{Body, HeldBox, Mirror, SplineModesError};
 use crate::math::Vector;
 use crate::math::parallel::sweep_each;
 use crate::math::sparse::{Factors, Symmetric};
 use crate::physics::solid::{MOST_HISTORY, Material, tangent_product, tensor};
 
-/// Splines that are not zero in a cell.
+/// Number of splines that differ from zero in a cell.
 const LOCAL: usize = LIVE * LIVE * LIVE;
-/// Most coefficients.
-const MOST: usize = 60_000;
-/// Springs that hold: modulus over the length of a cell, and over its square inside, times this.
+/// Greatest number of coefficients.
+const MAX_UNKNOWNS: usize = 60_000;
+/// Stiffness of the support springs: this factor times the modulus over the cell length on the surface, over its square
+/// inside.
 const HOLD: f64 = 100.0;
-/// Parts of the diagonal that are added until the stiffness can be factored: cells of which a body fills next to nothing.
+/// Fractions of the diagonal that are added, one after the other, until the stiffness can be factored; needed for cells
+/// that the body hardly touches.
 const FLOOR: [f64; 4] = [1e-13, 1e-12, 1e-11, 1e-10];
-/// How far beyond the sides of a box things are inside, over the size of the body.
+/// Tolerance of the sides of a box, relative to the size of the body.
 const SLACK: f64 = 1e-6;
-/// Cells whose local matrices are made at a time.
+/// Number of cells whose local matrices are computed in one batch.
 const BATCH: usize = 64;
 
-/// ∂P/∂F at rest: `a[m][n][i][j]` is the change of stress m i with the gradient n j.
+/// Tangent ∂P/∂F of the undeformed material: `a[m][n][i][j]` is the derivative of stress component (m, i) by gradient
+/// component (n, j).
 type Tangent = [[[[f64; 3]; 3]; 3]; 3];
 
-/// Where the splines are.
+/// The spline space on the lattice, restricted to the body.
 #[derive(Clone, Debug)]
 pub(super) struct Space {
     axes: [Axis; 3],
-    /// Number of each spline among those that the body meets; `u32::MAX` of others.
+    /// Number of each spline among those whose support meets the body; `u32::MAX` for the others.
     number: Vec<u32>,
-    /// How many the body meets.
+    /// Number of splines whose support meets the body.
     pub(super) live: usize,
-    /// Cells that the body meets.
+    /// Cells that meet the body.
     cells: Vec<Cell>,
-    /// Number of each cell of the lattice among these; `u32::MAX` of others.
+    /// Number of each cell of the lattice among these; `u32::MAX` for the others.
     cell_number: Vec<u32>,
 }
 
-/// A cell and what of the body is in it.
+/// A cell with the integration points of the body in it.
 #[derive(Clone, Debug, Default)]
 struct Cell {
     place: [usize; 3],
-    /// Points, density and material.
+    /// Integration points with the density and the material there.
     points: Vec<(Point, f64, u16)>,
-    /// Points at which the body is held, with the stiffness of the springs, and along which axes.
+    /// Points at which the body is constrained, with the spring stiffness along each axis.
     springs: Vec<(Vector<3>, [f64; 3])>,
 }
 
-/// Stiffness and inertia of a body.
+/// Stiffness and mass matrices of a body.
 pub(super) struct Matrices {
     pub(super) space: Space,
     pub(super) volume: f64,
     pub(super) mass_of_body: f64,
     stiffness: Symmetric,
-    /// ∫ ρ N N, for each direction alike.
+    /// Mass matrix ∫ ρ N N, equal for each direction.
     mass: Symmetric,
 }
 
-/// What a cell adds.
+/// Local matrices of a cell.
 #[derive(Clone, Default)]
 struct Local {
     stiffness: Vec<[[f64; 3]; 3]>,
@@ -69,7 +72,7 @@ impl Space {
         std::array::from_fn(|d| self.axes[d].len())
     }
 
-    /// Splines of a cell, in the order of its local ones.
+    /// Indices of the splines that differ from zero in a cell, in local order.
     fn of(&self, place: [usize; 3]) -> impl Iterator<Item = usize> {
         let [_, nb, nc] = self.counts();
         let first: [usize; 3] = std::array::from_fn(|d| self.axes[d].first[place[d]]);
@@ -79,7 +82,7 @@ impl Space {
         })
     }
 
-    /// Values and gradients at `x` of the splines of a cell.
+    /// Values and gradients at `x` of the splines that differ from zero in a cell.
     fn at(&self, place: [usize; 3], x: &Vector<3>) -> [[f64; 4]; LOCAL] {
         let [a, b, c]: [[[f64; 2]; LIVE]; 3] = std::array::from_fn(|d| self.axes[d].at(place[d], x[d]));
         std::array::from_fn(|k| {
@@ -96,7 +99,7 @@ impl Space {
         std::array::from_fn(|d| self.axes[d].cell(x[d]))
     }
 
-    /// The cell nearest to `x` that the body meets, of that of `x` and those around.
+    /// The nearest cell that meets the body, among the cell of `x` and its neighbours.
     fn near(&self, x: &Vector<3>) -> Option<[usize; 3]> {
         let home = self.cell(x);
         let mut best: Option<(f64, [usize; 3])> = None;
@@ -118,7 +121,7 @@ impl Space {
         best.map(|(_, place)| place)
     }
 
-    /// The field of `coefficients` at `x`.
+    /// Value at `x` of the field with these coefficients.
     pub(super) fn value(&self, coefficients: &[f64], x: &Vector<3>) -> Vector<3> {
         let Some(place) = self.near(x) else { return Vector::ZERO };
         let at = self.at(place, x);
@@ -128,12 +131,12 @@ impl Space {
         })
     }
 
-    /// Points of the body with their masses.
+    /// Integration points of the body with their masses.
     pub(super) fn masses(&self) -> impl Iterator<Item = (&Vector<3>, f64)> {
         self.cells.iter().flat_map(|cell| &cell.points).map(|(p, density, _)| (&p.x, p.weight * density))
     }
 
-    /// Numbers of the splines of a cell among those that the body meets.
+    /// Numbers of the splines of a cell among those whose support meets the body.
     fn numbers(&self, cell: &Cell) -> [usize; LOCAL] {
         let mut all = [0; LOCAL];
         all.iter_mut().zip(self.of(cell.place)).for_each(|(n, spline)| *n = self.number[spline] as usize);
@@ -141,7 +144,7 @@ impl Space {
     }
 }
 
-/// A lattice over the body, with kinks where it is held, and the axis of the rays.
+/// A lattice over the body, with breaks at the supports, and the axis of the rays.
 fn lattice(body: &Body<'_>, size: f64) -> ([Axis; 3], usize) {
     let bounds = body.surface.bounds();
     let axes = std::array::from_fn(|d| {
@@ -159,7 +162,7 @@ fn lattice(body: &Body<'_>, size: f64) -> ([Axis; 3], usize) {
 }
 
 impl Matrices {
-    pub(super) fn new(body: &Body<'_>, size: f64) -> Result<Self, Unfit> {
+    pub(super) fn new(body: &Body<'_>, size: f64) -> Result<Self, SplineModesError> {
         let (axes, along) = lattice(body, size);
         let space = filled(body, axes, along)?;
         let space = held(body, space, along)?;
@@ -178,7 +181,7 @@ impl Matrices {
         Ok(Self { space, volume, mass_of_body, stiffness, mass })
     }
 
-    /// M x.
+    /// The product M x.
     pub(super) fn inertia(&self, x: &[f64]) -> Vec<f64> {
         let mut out = vec![0.0; x.len()];
         for column in 0..self.mass.len() {
@@ -195,7 +198,7 @@ impl Matrices {
         out
     }
 
-    /// Factors of K + shift M.
+    /// Factors of K + shift M; `None` when this is not positive definite.
     pub(super) fn factor(&self, shift: f64) -> Option<Factors> {
         FLOOR.iter().find_map(|floor| {
             let mut sum = self.stiffness.clone();
@@ -213,8 +216,8 @@ impl Matrices {
     }
 }
 
-/// The cells that the body meets, with its points.
-fn filled(body: &Body<'_>, axes: [Axis; 3], along: usize) -> Result<Space, Unfit> {
+/// The spline space with the integration points of the body.
+fn filled(body: &Body<'_>, axes: [Axis; 3], along: usize) -> Result<Space, SplineModesError> {
     let cells: usize = axes.iter().map(Axis::cells).product();
     let splines: usize = axes.iter().map(Axis::len).product();
     let mut space = Space {
@@ -248,20 +251,20 @@ fn filled(body: &Body<'_>, axes: [Axis; 3], along: usize) -> Result<Space, Unfit
         space.live += 1;
     }
     match 3 * space.live {
-        0 => Err(Unfit::Hollow),
-        unknowns if unknowns > MOST => Err(Unfit::TooLarge { unknowns, most: MOST }),
+        0 => Err(SplineModesError::Hollow),
+        unknowns if unknowns > MAX_UNKNOWNS => Err(SplineModesError::TooLarge { unknowns, most: MAX_UNKNOWNS }),
         _ => Ok(space),
     }
 }
 
-/// Adds springs where the body is held.
-fn held(body: &Body<'_>, mut space: Space, along: usize) -> Result<Space, Unfit> {
+/// Adds the springs of the supports and planes of symmetry.
+fn held(body: &Body<'_>, mut space: Space, along: usize) -> Result<Space, SplineModesError> {
     let sizes = space.axes.iter().map(|a| a.ends.windows(2).map(|e| e[1] - e[0]).fold(f64::INFINITY, f64::min));
     let least = sizes.fold(f64::INFINITY, f64::min);
     let slack = SLACK * body.surface.bounds().extent().norm();
     let young = |x: &Vector<3>| body.materials[(body.material)(x)].moduli.young();
     let within =
-        |x: &Vector<3>, h: &Held| (0..3).all(|d| h.place[d][0] - slack <= x[d] && x[d] <= h.place[d][1] + slack);
+        |x: &Vector<3>, h: &HeldBox| (0..3).all(|d| h.place[d][0] - slack <= x[d] && x[d] <= h.place[d][1] + slack);
     let mut found = vec![false; body.held.len()];
     let mut springs: Vec<(Vector<3>, [f64; 3])> = Vec::new();
     let mut put = |x: &Vector<3>, stiffness: f64, fixed: [bool; 3]| {
@@ -288,7 +291,7 @@ fn held(body: &Body<'_>, mut space: Space, along: usize) -> Result<Space, Unfit>
         space.cells.iter().flat_map(|c| &c.points).for_each(|(p, ..)| hold(&p.x, p.weight, least * least));
     }
     if let Some(number) = found.iter().position(|f| !f) {
-        return Err(Unfit::Unsupported { number });
+        return Err(SplineModesError::Unsupported { number });
     }
     for (x, stiffness) in springs {
         if let Some(place) = space.near(&x) {
@@ -299,16 +302,16 @@ fn held(body: &Body<'_>, mut space: Space, along: usize) -> Result<Space, Unfit>
     Ok(space)
 }
 
-/// The longest cell.
+/// Length of the longest side of a cell.
 fn largest(axes: &[Axis; 3]) -> f64 {
     axes.iter().flat_map(|a| a.ends.windows(2).map(|e| e[1] - e[0])).fold(0.0, f64::max)
 }
 
-/// Points of the cut of a body by a plane of symmetry.
+/// Integration points on the section of a body by a plane of symmetry.
 fn section(body: &Body<'_>, axes: &[Axis; 3], along: usize, mirror: &Mirror) -> Vec<(Point, Mirror)> {
     let across = 3 - along - mirror.axis;
     let mut flat = axes.clone();
-    // one thin cell at the plane: what its rays meet over its thickness is the area
+    // one thin cell at the plane: the volume that its rays find, divided by its thickness, is the area
     let thin = SLACK * body.surface.bounds().extent()[mirror.axis];
     let ends = if mirror.below { [mirror.place - thin, mirror.place] } else { [mirror.place, mirror.place + thin] };
     flat[mirror.axis] = Axis::new(ends, thin, &[]);
@@ -319,7 +322,7 @@ fn section(body: &Body<'_>, axes: &[Axis; 3], along: usize, mirror: &Mirror) -> 
     points.map(|p| (Point { weight: p.weight / thin, ..p }, *mirror)).collect()
 }
 
-/// ∂P/∂F at rest.
+/// Tangent ∂P/∂F of the undeformed material.
 fn tangent(material: &Material) -> Tangent {
     let mut history = [0.0; MOST_HISTORY];
     material.begin(&mut history[..material.history_len()]);
@@ -334,7 +337,7 @@ fn tangent(material: &Material) -> Tangent {
     all
 }
 
-/// Splines with a number not less than its own that each spline meets in a cell.
+/// For each spline, the splines with equal or greater numbers with which it shares a cell.
 fn neighbours(space: &Space) -> Vec<Vec<u32>> {
     let mut rows: Vec<Vec<u32>> = vec![Vec::new(); space.live];
     for cell in &space.cells {
@@ -350,7 +353,7 @@ fn neighbours(space: &Space) -> Vec<Vec<u32>> {
     rows
 }
 
-/// The lower triangle of a matrix with blocks of the order `d`, zero.
+/// Zero matrix with blocks of order `d`, lower triangle.
 fn pattern(rows: &[Vec<u32>], d: usize) -> Symmetric {
     let mut matrix = Symmetric { first: vec![0], row: Vec::new(), value: Vec::new() };
     for (i, row) in rows.iter().enumerate() {
@@ -364,13 +367,13 @@ fn pattern(rows: &[Vec<u32>], d: usize) -> Symmetric {
     matrix
 }
 
-/// Where the entry of a row and column is.
+/// Position of the entry (row, column) in the values of a matrix.
 fn place_in(matrix: &Symmetric, column: usize, row: usize) -> usize {
     let (from, to) = (matrix.first[column], matrix.first[column + 1]);
     from + matrix.row[from..to].partition_point(|r| *r < row)
 }
 
-/// Stiffness and inertia of what is in a cell.
+/// Local stiffness and mass matrices of a cell.
 fn local(space: &Space, cell: &Cell, tangents: &[Tangent]) -> Local {
     let mut out = Local { stiffness: vec![[[0.0; 3]; 3]; LOCAL * LOCAL], mass: vec![0.0; LOCAL * LOCAL] };
     for (number, tangent) in tangents.iter().enumerate() {
@@ -405,7 +408,7 @@ fn local(space: &Space, cell: &Cell, tangents: &[Tangent]) -> Local {
     out
 }
 
-/// Adds what a cell has to the matrices.
+/// Adds the local matrices of a cell to the global ones.
 fn scatter(
     numbers: &[usize; LOCAL],
     local: &Local,
@@ -414,7 +417,7 @@ fn scatter(
 ) {
     for (i, j) in (0..LOCAL).flat_map(|i| (0..=i).map(move |j| (i, j))) {
         let k = i * LOCAL + j;
-        // the local block is that of row i and column j; in the matrix the greater number is the row
+        // the local block has row i and column j; in the global matrix the greater number is the row
         let (row, column, turned) =
             if numbers[i] >= numbers[j] { (numbers[i], numbers[j], false) } else { (numbers[j], numbers[i], true) };
         let at = rows[column].partition_point(|r| (*r as usize) < row);
@@ -424,7 +427,7 @@ fn scatter(
                 continue;
             }
             let value = if turned { local.stiffness[k][n][m] } else { local.stiffness[k][m][n] };
-            // columns of a block begin with its diagonal, where it is one of the diagonal
+            // each column of a diagonal block starts with its diagonal entry
             stiffness.value[stiffness.first[3 * column + n] + 3 * at + m - n] += value;
         }
     }

@@ -1,26 +1,26 @@
 //! Cubic B-splines along one axis.
 //!
-//! Cells may differ in length, and at a *break* a spline may have a kink: there the knot is as often as the degree says, so that one
-//! spline alone is not zero there (de Boor 1978, *A Practical Guide to Splines*, chapter IX; Piegl and Tiller 1997, algorithms A2.2
-//! and A2.3).
+//! The cells may have different lengths. At a *break* the field may have a kink: the knot there has a multiplicity
+//! equal to the degree, so that only one spline differs from zero (de Boor 1978, *A Practical Guide to Splines*,
+//! chapter IX; Piegl and Tiller 1997, algorithms A2.2 and A2.3).
 
-/// Degree.
+/// Polynomial degree.
 pub(super) const DEGREE: usize = 3;
-/// Splines that are not zero in a cell.
+/// Number of splines that differ from zero in a cell.
 pub(super) const LIVE: usize = DEGREE + 1;
 
-/// Splines along an axis.
+/// The B-splines along an axis.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Axis {
     knots: Vec<f64>,
-    /// Ends of the cells.
+    /// End points of the cells.
     pub(super) ends: Vec<f64>,
-    /// First spline of each cell.
+    /// Index of the first spline that differs from zero in each cell.
     pub(super) first: Vec<usize>,
 }
 
 impl Axis {
-    /// Cells of about one size from `low` to `high`, with kinks at `breaks`.
+    /// Cells of about the length `size` from `low` to `high`, with kinks at `breaks`.
     pub(super) fn new([low, high]: [f64; 2], size: f64, breaks: &[f64]) -> Self {
         let mut pieces: Vec<f64> = breaks.iter().copied().filter(|b| low < *b && *b < high).collect();
         pieces.sort_by(f64::total_cmp);
@@ -58,12 +58,12 @@ impl Axis {
         self.first.len()
     }
 
-    /// The cell that holds `x`; the outermost for what is beyond the ends.
+    /// The cell that contains `x`; the outermost cell for points beyond the ends.
     pub(super) fn cell(&self, x: f64) -> usize {
         self.ends[1..self.ends.len() - 1].partition_point(|end| *end <= x)
     }
 
-    /// Values and slopes at `x` of the splines of `cell`.
+    /// Values and derivatives at `x` of the splines that differ from zero in `cell`.
     pub(super) fn at(&self, cell: usize, x: f64) -> [[f64; 2]; LIVE] {
         let span = self.first[cell] + DEGREE;
         let (t, mut values, mut lower) = (&self.knots, [0.0; LIVE], [0.0; LIVE]);

@@ -1,11 +1,13 @@
-//! Natural modes of a solid in space among splines.
+//! Natural modes of a 3-D solid with B-splines.
 //!
-//! K φ = ω² M φ by Ritz's method: displacements are tensor products of cubic B-splines on a lattice of cells over the body's box,
-//! and energies are integrals over the body itself, taken along rays through its surface (`points`). No cloud fills the body, so that
-//! sharp edges, thin tails and plates much thinner than a cell are as good as thick parts: cubic splines hold the bending of a plate
-//! with one cell through the thickness. Frequencies are upper bounds of those of the lattice's limit, and a second, coarser lattice
-//! says how far they still are from it (Höllig 2003, *Finite Element Methods with B-Splines*; Parvizian, Düster and Rank 2007,
-//! *Computational Mechanics* 41, for cells that a body fills in part). Book page `solid-particles`.
+//! K φ = ω² M φ by the Ritz method. The displacements are tensor products of cubic B-splines on a lattice of cells over
+//! the bounding box of the body; the energies are integrals over the body itself, evaluated along rays through its
+//! surface (`points`). Because the body is not filled with particles, sharp edges, thin tails and plates much thinner
+//! than a cell need no special treatment: cubic splines represent the bending of a plate with a single cell through the
+//! thickness. The frequencies are upper bounds of those on an infinitely fine lattice. A second, coarser lattice gives
+//! an estimate of the remaining error (Höllig 2003, *Finite Element Methods with B-Splines*; Parvizian, Düster and Rank
+//! 2007, *Computational Mechanics* 41, for cells that are filled in part). See the book page
+//! `solid-particles`.
 mod assembly;
 mod basis;
 mod points;
@@ -20,54 +22,54 @@ use crate::math::symmetric;
 use crate::physics::solid::Material;
 use assembly::{Matrices, Space};
 
-/// Cells of the lattice across the body, where nothing else is said: those of its box in the plane of its two longest sides, or in all
-/// of it.
+/// Default number of cells of the lattice: in the plane of the two longest sides of the bounding box, or in all of it.
 const CELLS: f64 = 500.0;
-/// How much coarser the second lattice is, by which errors are estimated.
+/// Ratio of the cell sizes of the second, coarser lattice and the first, for the error estimate.
 const COARSER: f64 = 1.5;
-/// Part of (speed of shear waves over length)² that is added to K over M, so that free bodies can be factored.
+/// Shift added to K in units of M (speed of shear waves / length)², so that free bodies can be factored.
 const SHIFT: f64 = 1e-3;
-/// Part of the same below which ω² is that of a motion as a whole.
+/// Fraction of the same unit below which ω² belongs to a rigid-body mode.
 const RIGID: f64 = 1e-7;
 
-/// Where a body is held.
+/// A box in which the body is constrained.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Held {
-    /// Smallest and largest coordinates of a box: what is in it is held, the surface as the inside.
+pub struct HeldBox {
+    /// Smallest and largest coordinate of the box along each axis. All parts of the body in it are constrained, inside
+    /// and surface.
     pub place: [[f64; 2]; 3],
-    /// True for axes along which it is held.
+    /// True for the axes along which the displacement is zero.
     pub fixed: [bool; 3],
 }
 
-/// A plane across an axis beyond which the body is its mirror image.
+/// A plane of symmetry normal to an axis.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Mirror {
-    /// The axis.
+    /// Index of the axis.
     pub axis: usize,
-    /// The plane's coordinate on it.
+    /// Coordinate of the plane on this axis.
     pub place: f64,
-    /// The body at hand is on the side of smaller coordinates.
+    /// True when the body lies on the side of smaller coordinates.
     pub below: bool,
 }
 
-/// A body of which modes are sought.
+/// A body whose natural modes are computed.
 pub struct Body<'a> {
-    /// Its surface, closed.
+    /// Its closed surface.
     pub surface: &'a Surface<3>,
-    /// Materials; modes are those of their small strains about rest.
+    /// Materials; the modes use their elastic moduli at small strains.
     pub materials: &'a [Material],
-    /// Number of the material at a point.
+    /// Index of the material at a point.
     pub material: &'a (dyn Fn(&Vector<3>) -> usize + Sync),
-    /// Where it is held.
-    pub held: &'a [Held],
+    /// Boxes in which the body is constrained.
+    pub held: &'a [HeldBox],
     /// Planes of symmetry.
     pub mirrors: &'a [Mirror],
-    /// Length of a cell; `None`: by the size of the body.
+    /// Cell size; `None`: chosen from the size of the body.
     pub size: Option<f64>,
 }
 
 impl Body<'_> {
-    /// True for points farther than `slack` beyond a plane of symmetry.
+    /// True for points more than `slack` beyond a plane of symmetry.
     fn beyond(&self, x: &Vector<3>, slack: f64) -> bool {
         let far = |m: &Mirror| if m.below { x[m.axis] - m.place } else { m.place - x[m.axis] };
         self.mirrors.iter().any(|m| far(m) > slack)
@@ -77,57 +79,60 @@ impl Body<'_> {
 /// A natural mode.
 #[derive(Clone, Debug)]
 pub struct Mode {
-    /// Angular frequency; 0 where the body moves as a whole.
+    /// Angular frequency [rad/s]; 0 for a rigid-body mode.
     pub omega: f64,
-    /// Relative difference from the frequency on a coarser lattice.
+    /// Relative difference from the frequency on the coarser lattice.
     pub error: f64,
-    /// ∫ ρ φ² dV.
+    /// Generalised mass ∫ ρ φ² dV [kg].
     pub generalised_mass: f64,
     coefficients: Vec<f64>,
 }
 
-/// Modes of a body.
-pub struct Found {
-    /// The lowest, from the slowest on, of unit generalised mass.
+/// Natural modes of a body.
+pub struct SplineModes {
+    /// The modes in ascending order of frequency, with unit generalised mass.
     pub modes: Vec<Mode>,
-    /// Mass of the body on this side of the planes of symmetry.
+    /// Mass [kg] of the body on this side of the planes of symmetry.
     pub mass: f64,
-    /// Its volume by rays.
+    /// Volume by integration along rays.
     pub volume: f64,
-    /// Number of coefficients.
+    /// Number of spline coefficients.
     pub unknowns: usize,
-    /// Length of a cell.
+    /// Cell size.
     pub size: f64,
     space: Space,
 }
 
-/// Why there are no modes.
+/// Reason why modes could not be computed.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
-pub enum Unfit {
-    /// Rays found no inside.
-    #[error("no ray meets the inside of the body: is its surface closed?")]
+pub enum SplineModesError {
+    /// No ray passes through the inside of the body.
+    #[error("no ray passes through the inside of the body: is its surface closed?")]
     Hollow,
-    /// A support without a part of the body.
-    #[error("support {} is where nothing of the body is", .number + 1)]
+    /// No part of the body lies in the box of a support.
+    #[error("support {} contains no part of the body", .number + 1)]
     Unsupported {
-        /// Which.
+        /// Index of the support.
         number: usize,
     },
-    /// Too many cells.
-    #[error("{unknowns} coefficients of splines are more than the {most} of which modes are found")]
+    /// There are too many unknowns.
+    #[error("the body needs {unknowns} spline coefficients, but modes are computed for at most {most}")]
     TooLarge {
-        /// How many there are.
+        /// Number of unknowns.
         unknowns: usize,
-        /// How many there may be.
+        /// Greatest number of unknowns.
         most: usize,
     },
-    /// K is not positive.
-    #[error("the stiffness of the body is not positive: its elastic constants allow deformation that stores no energy")]
+    /// The stiffness matrix is not positive definite.
+    #[error(
+        "the stiffness of the body is not positive definite: its elastic constants permit deformation without energy"
+    )]
     Soft,
 }
 
-/// The lowest `count` modes.
-pub fn modes(body: &Body<'_>, count: usize) -> Result<Found, Unfit> {
+/// Computes the lowest `count` modes. Fails when the surface is open, a support holds nothing, or the matrices are too
+/// large or not positive definite.
+pub fn modes(body: &Body<'_>, count: usize) -> Result<SplineModes, SplineModesError> {
     let size = body.size.unwrap_or_else(|| usual_size(body));
     let mut found = on_lattice(body, size, count)?;
     let coarse = on_lattice(body, COARSER * size, count)?;
@@ -137,7 +142,7 @@ pub fn modes(body: &Body<'_>, count: usize) -> Result<Found, Unfit> {
     Ok(found)
 }
 
-/// Cells as long in all directions, but for thin ones.
+/// Default cell size: cubic cells, except across thin bodies.
 fn usual_size(body: &Body<'_>) -> f64 {
     let mut sides = body.surface.bounds().extent().0;
     sides.sort_by(|a, b| b.total_cmp(a));
@@ -145,22 +150,22 @@ fn usual_size(body: &Body<'_>) -> f64 {
     if sides[2] < 1.5 * flat { flat } else { (sides[0] * sides[1] * sides[2] / CELLS).cbrt() }
 }
 
-fn on_lattice(body: &Body<'_>, size: f64, count: usize) -> Result<Found, Unfit> {
+fn on_lattice(body: &Body<'_>, size: f64, count: usize) -> Result<SplineModes, SplineModesError> {
     let matrices = Matrices::new(body, size)?;
     let Matrices { space, volume, mass_of_body, .. } = &matrices;
     let n = 3 * space.live;
     let speed = body.materials.iter().map(Material::shear_wave_speed).fold(0.0, f64::max);
     let scale = (speed / body.surface.bounds().extent().norm()).powi(2);
-    let factors = matrices.factor(SHIFT * scale).ok_or(Unfit::Soft)?;
+    let factors = matrices.factor(SHIFT * scale).ok_or(SplineModesError::Soft)?;
     let count = count.min(n);
     let (values, vectors) =
-        lowest(n, count, |x| matrices.inertia(x), |block| factors.solve(block)).ok_or(Unfit::Soft)?;
+        lowest(n, count, |x| matrices.inertia(x), |block| factors.solve(block)).ok_or(SplineModesError::Soft)?;
     let modes = values.iter().zip(vectors).map(|(value, coefficients)| {
         let square = 1.0 / value - SHIFT * scale;
         let omega = if square > RIGID * scale { square.sqrt() } else { 0.0 };
         Mode { omega, error: 0.0, generalised_mass: 1.0, coefficients }
     });
-    Ok(Found {
+    Ok(SplineModes {
         modes: modes.collect(),
         mass: *mass_of_body,
         volume: *volume,
@@ -170,16 +175,16 @@ fn on_lattice(body: &Body<'_>, size: f64, count: usize) -> Result<Found, Unfit> 
     })
 }
 
-/// The largest eigenvalues θ of x ↦ solve(M x), M-orthonormal vectors with them: block iteration with Rayleigh and Ritz (Bathe and
-/// Wilson 1972). M is no diagonal here, whose root would make the operator symmetric for [`crate::math::lanczos`]. `None` where it does
-/// not settle.
+/// The largest eigenvalues θ of x ↦ solve(M x) with M-orthonormal eigenvectors, by block iteration with Rayleigh-Ritz
+/// projection (Bathe and Wilson 1972). M is not diagonal here, so that its root is not available to make the operator
+/// symmetric for [`crate::math::lanczos`]. `None` when the iteration does not converge.
 fn lowest(
     n: usize,
     count: usize,
     inertia: impl Fn(&[f64]) -> Vec<f64>,
     solve: impl Fn(&mut [f64]),
 ) -> Option<(Vec<f64>, Vec<Vec<f64>>)> {
-    /// What eigenvalues may still change by, over themselves and over the largest.
+    /// Tolerance for changes of the eigenvalues, relative to themselves and to the largest.
     const TOLERANCE: [f64; 2] = [1e-11, 1e-14];
     const MOST_ITERATIONS: usize = 200;
     let m = (2 * count + 4).max(count + 8).min(n);
@@ -217,7 +222,7 @@ fn lowest(
     None
 }
 
-/// Makes vectors M-orthonormal; gives M times them.
+/// Makes the vectors M-orthonormal and returns M times them; `None` when they are linearly dependent.
 fn orthonormal(x: &mut [Vec<f64>], inertia: &impl Fn(&[f64]) -> Vec<f64>) -> Option<Vec<Vec<f64>>> {
     let mut images: Vec<Vec<f64>> = Vec::new();
     for k in 0..x.len() {
@@ -239,18 +244,18 @@ fn orthonormal(x: &mut [Vec<f64>], inertia: &impl Fn(&[f64]) -> Vec<f64>) -> Opt
     Some(images)
 }
 
-impl Found {
-    /// Displacement of mode number `k` at a point of the body or near it.
+impl SplineModes {
+    /// Displacement of mode `k` at the point `x` in the body or near it.
     pub fn displacement(&self, k: usize, x: &Vector<3>) -> Vector<3> {
         self.space.value(&self.modes[k].coefficients, x)
     }
 
-    /// ∫ ρ f·φ dV with mode number `k`.
+    /// The integral ∫ ρ f·φ dV with mode `k`.
     pub fn along(&self, k: usize, f: impl Fn(&Vector<3>) -> Vector<3>) -> f64 {
         self.space.masses().map(|(x, mass)| mass * f(x).dot(&self.displacement(k, x))).sum()
     }
 
-    /// Divides mode number `k` by `by`.
+    /// Divides mode `k` by `by` and its generalised mass accordingly.
     pub fn scale(&mut self, k: usize, by: f64) {
         let mode = &mut self.modes[k];
         mode.coefficients.iter_mut().for_each(|c| *c /= by);
@@ -258,7 +263,7 @@ impl Found {
     }
 }
 
-/// At most `count` points of the surface of a body, on this side of its planes of symmetry, as far from one another as they can be.
+/// At most `count` points on the surface of a body, on this side of its planes of symmetry, as far apart as possible.
 pub fn spread(body: &Body<'_>, count: usize) -> Vec<Vector<3>> {
     let surface = body.surface;
     let size = (surface.area() / (20.0 * count as f64)).sqrt();

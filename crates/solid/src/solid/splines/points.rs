@@ -1,38 +1,38 @@
-//! Points at which integrals over a solid are taken: along rays through it.
+//! Integration points in a solid, along rays through it.
 //!
-//! Rays go along the axis in which the body is thinnest, through Gauss's points of each cell of the lattice across it. Where a ray
-//! enters and leaves is exact, so that sharp edges and sections thinner than a cell need nothing special; cells that the outline of the
-//! body cuts are divided before.
+//! The rays run along the axis in which the body is thinnest, through the Gauss points of each cell of the lattice
+//! across it. The points at which a ray enters and leaves the body are exact, so that sharp edges and sections thinner
+//! than a cell need no special treatment. Cells that the outline of the body cuts are subdivided.
 use super::basis::Axis;
 use crate::geometry::Surface;
 use crate::math::Vector;
 
-/// A point of a solid.
+/// An integration point.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Point {
-    /// Where.
+    /// Position.
     pub(super) x: Vector<3>,
-    /// Its part of the volume, or of the area.
+    /// Weight: the volume, or area, that the point represents.
     pub(super) weight: f64,
 }
 
-/// Abscissae and weights of Gauss's rule of 2 points on 0 to 1.
+/// Abscissae and weights of the Gauss rule with 2 points on [0, 1].
 const TWO: [[f64; 2]; 2] = [[0.211_324_865_405_187_1, 0.5], [0.788_675_134_594_812_9, 0.5]];
-/// The same of 4 points.
+/// Abscissae and weights of the Gauss rule with 4 points on [0, 1].
 pub(super) const FOUR: [[f64; 2]; 4] = [
     [0.069_431_844_202_973_71, 0.173_927_422_568_726_93],
     [0.330_009_478_207_571_9, 0.326_072_577_431_273_07],
     [0.669_990_521_792_428_1, 0.326_072_577_431_273_07],
     [0.930_568_155_797_026_3, 0.173_927_422_568_726_93],
 ];
-/// Parts of a side of a cell that the outline cuts.
+/// Number of subdivisions along each side of a cell that the outline cuts.
 const PARTS: usize = 4;
 
-/// The triangles of a body sorted by the columns of a lattice that they are in.
+/// The triangles of a surface, sorted into the columns of the lattice that they overlap.
 pub(super) struct Rays<'a> {
     surface: &'a Surface<3>,
     axes: &'a [Axis; 3],
-    /// The axis of the rays, and the two across.
+    /// Axis of the rays, followed by the two other axes.
     along: usize,
     across: [usize; 2],
     columns: Vec<Vec<u32>>,
@@ -56,12 +56,12 @@ impl<'a> Rays<'a> {
         Self { surface, axes, along, across, columns }
     }
 
-    /// Number of columns of cells.
+    /// Number of columns of the lattice.
     pub(super) fn columns(&self) -> usize {
         self.columns.len()
     }
 
-    /// The points of the solid in a column.
+    /// Integration points of the solid in a column.
     pub(super) fn points(&self, column: usize) -> Vec<Point> {
         let whole = self.shoot(column, 1, &FOUR);
         let lengths = whole.iter().map(|(_, parts)| parts.iter().map(|[low, high]| high - low).sum::<f64>());
@@ -74,7 +74,7 @@ impl<'a> Rays<'a> {
         points
     }
 
-    /// Points between two places of a ray, cell by cell.
+    /// Adds the integration points between two positions on a ray, cell by cell.
     fn fill(&self, ray: &Point, [low, high]: [f64; 2], points: &mut Vec<Point>) {
         let ends = &self.axes[self.along].ends;
         for cell in self.axes[self.along].cell(low)..=self.axes[self.along].cell(high) {
@@ -87,7 +87,7 @@ impl<'a> Rays<'a> {
         }
     }
 
-    /// Rays through a column of which each side is divided into `parts`: where they are inside.
+    /// Rays through a column with each side divided into `parts`, each with the intervals inside the body.
     fn shoot(&self, column: usize, parts: usize, rule: &[[f64; 2]]) -> Vec<(Point, Vec<[f64; 2]>)> {
         let [a, b] = self.across;
         let nb = self.axes[b].cells();
@@ -111,7 +111,7 @@ impl<'a> Rays<'a> {
         rays
     }
 
-    /// Where the ray through `x` is inside the body: entered more often than left.
+    /// Intervals of the ray through `x` inside the body: where it has entered more often than left.
     fn inside(&self, column: usize, x: &Vector<3>) -> Vec<[f64; 2]> {
         let crossings = self.columns[column].iter().filter_map(|e| self.crossing(*e, x));
         let mut crossings: Vec<(f64, i32)> = crossings.collect();
@@ -129,12 +129,13 @@ impl<'a> Rays<'a> {
         parts
     }
 
-    /// Where the ray through `x` crosses a triangle, and whether it enters (1) or leaves (-1) there.
+    /// Position at which the ray through `x` crosses triangle `e`, and whether it enters (1) or leaves (−1) the body
+    /// there.
     fn crossing(&self, e: u32, x: &Vector<3>) -> Option<(f64, i32)> {
         let [a, b] = self.across;
         let ids = self.surface.elements[e as usize].vertices;
         let corners = self.surface.corners(e);
-        // the same number for both triangles at an edge, so that a ray through it meets one of them
+        // the same number for both triangles at an edge, so that a ray through the edge crosses exactly one of them
         let side = |i: usize, j: usize| {
             let (flip, p, q) =
                 if ids[i] < ids[j] { (1.0, &corners[i], &corners[j]) } else { (-1.0, &corners[j], &corners[i]) };
@@ -152,7 +153,8 @@ impl<'a> Rays<'a> {
     }
 }
 
-/// Points of the surface of a body, with their parts of its area: triangles divided until no side is longer than `size`.
+/// Calls `visit` with integration points on the surface: centroids of triangles, divided until no side is longer than
+/// `size`.
 pub(super) fn of_surface(surface: &Surface<3>, size: f64, mut visit: impl FnMut(Point)) {
     for e in 0..surface.elements.len() as u32 {
         let [p, q, r] = surface.corners(e);

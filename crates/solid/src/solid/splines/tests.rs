@@ -14,7 +14,7 @@ fn slab(low: [f64; 3], high: [f64; 3]) -> Surface<3> {
     hexahedron(|k| std::array::from_fn(|d| if k >> d & 1 == 1 { high[d] } else { low[d] }))
 }
 
-fn body<'a>(surface: &'a Surface<3>, materials: &'a [Material], held: &'a [Held]) -> Body<'a> {
+fn body<'a>(surface: &'a Surface<3>, materials: &'a [Material], held: &'a [HeldBox]) -> Body<'a> {
     Body { surface, materials, material: &|_| 0, held, mirrors: &[], size: None }
 }
 
@@ -27,7 +27,7 @@ const ANY: [f64; 2] = [f64::NEG_INFINITY, f64::INFINITY];
 #[test]
 fn a_cantilever_fifty_times_as_long_as_thick_swings_as_a_beam() {
     let (surface, steel) = (slab([0.0; 3], [1.0, 0.2, 0.02]), material(2.0e11, 0.0, 8000.0));
-    let held = [Held { place: [[f64::NEG_INFINITY, 0.0], ANY, ANY], fixed: [true; 3] }];
+    let held = [HeldBox { place: [[f64::NEG_INFINITY, 0.0], ANY, ANY], fixed: [true; 3] }];
     let found = modes(&body(&surface, &steel, &held), 3).unwrap();
     assert!((found.mass - 32.0).abs() < 1e-9, "{}", found.mass);
     let beam = |root: f64| root * root * (2.0e11 * 0.02f64.powi(2) / (12.0 * 8000.0)).sqrt();
@@ -55,7 +55,7 @@ fn a_wedge_swings_as_a_tapered_beam() {
         let (x, y) = (if k & 1 == 1 { 1.0 } else { 0.0 }, if k & 2 == 2 { 0.05 } else { 0.0 });
         [x, y, (1.0 - x) * if k & 4 == 4 { 0.01 } else { -0.01 }]
     });
-    let held = [Held { place: [[f64::NEG_INFINITY, 0.0], ANY, ANY], fixed: [true; 3] }];
+    let held = [HeldBox { place: [[f64::NEG_INFINITY, 0.0], ANY, ANY], fixed: [true; 3] }];
     let steel = material(2.0e11, 0.0, 8000.0);
     let found = modes(&body(&wedge, &steel, &held), 1).unwrap();
     assert!((found.mass / (0.5 * 0.02 * 0.05 * 8000.0) - 1.0).abs() < 1e-6, "{}", found.mass);
@@ -79,6 +79,6 @@ fn half_a_body_at_a_plane_of_symmetry_has_the_symmetric_modes_of_the_whole() {
 #[test]
 fn a_support_beside_the_body_is_told() {
     let (surface, soft) = (slab([0.0; 3], [1.0; 3]), material(1.0, 0.3, 1.0));
-    let held = [Held { place: [[2.0, 3.0], ANY, ANY], fixed: [true; 3] }];
-    assert_eq!(modes(&body(&surface, &soft, &held), 1).err(), Some(Unfit::Unsupported { number: 0 }));
+    let held = [HeldBox { place: [[2.0, 3.0], ANY, ANY], fixed: [true; 3] }];
+    assert_eq!(modes(&body(&surface, &soft, &held), 1).err(), Some(SplineModesError::Unsupported { number: 0 }));
 }
