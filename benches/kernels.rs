@@ -17,7 +17,7 @@ use alula::cloud::conservative::conservative;
 use alula::cloud::{Cloud, CloudSpec, Operators};
 use alula::geometry::load_surface;
 use alula::math::Vector;
-use alula::math::sweep::{sweep, sweep_each};
+use alula::math::parallel::{sweep, sweep_each};
 use alula::physics::Primitive;
 use alula::scheme::{Fluid, RemapLedger};
 use alula::system::{Hierarchy, Implicit, Instant, Preconditioner, Reach, RightHandSide, Shift, System};

@@ -12,7 +12,7 @@ use alula::geometry::load_surface;
 use alula::scheme::start::FreeStream;
 use alula::scheme::{CloudMotion, Fluid, HasGas};
 use alula::structure::{Coordinate, InertiaLaw, Model, PlanarBody, Spring, Structure};
-use alula::system::System;
+use alula::system::{Name, System};
 use alula::time::Integrator;
 use alula::time::control::Control;
 use alula::time::relax::Relax;
@@ -40,7 +40,7 @@ pub(crate) fn run() -> Result<[f64; 2], Box<dyn Error>> {
         relax.advance()?;
     }
     let at = relax.standing();
-    let [plunge, _, pitch, _] = at.state[system.placing()] else {
+    let [plunge, _, pitch, _] = at.state[system.unknowns_of(Name::Structure)] else {
         return Err("two coordinates with their rates".into());
     };
     let lift = system.gas().pressure_force(system.gas_frame(at.frame), system.gas_work(at.work))[1];

@@ -4,7 +4,7 @@ use std::path::Path;
 use alula::coupling::{Attached, Coupled, body_motion};
 use alula::scheme::{CloudMotion, Fluid};
 use alula::structure::{Coordinate, InertiaLaw, Model, PlanarBody, Spring, Structure};
-use alula::system::Implicit;
+use alula::system::{Implicit, Name, System};
 use alula::time::control::Control;
 use alula::time::dual::{Dual, Plan};
 use alula::time::relax::Relax;
@@ -40,7 +40,7 @@ pub(super) fn coupled_step() {
     let system = sprung(still, std::f64::consts::TAU / period);
     let all = system.start_with(&u);
     let plan = |orders| Plan { until: 1e9, step: period / 64.0, order: 2, orders, iterations: 20, adaptive: None };
-    let gas = system.gas_range();
+    let gas = system.unknowns_of(Name::Gas);
     let mut exact = [Vec::new(), Vec::new()];
     for orders in ORDERS {
         let mut prescribed = Dual::new(&fluid, Control::newton(2), plan(orders), Past::default(), u.clone());

@@ -72,7 +72,7 @@ pub(crate) enum Command {
 pub(crate) struct Run {
     /// Case file.
     pub(crate) case: PathBuf,
-    /// Folder for the results; default: the name of the case without its extension.
+    /// Folder for the results; default: `runs/` and the name of the case without its extension, with a number where that is taken.
     #[arg(long, value_name = "DIR")]
     pub(crate) out: Option<PathBuf>,
     #[command(flatten)]
@@ -120,7 +120,7 @@ pub(crate) struct Check {
 pub(crate) struct Cloud {
     /// Case file.
     pub(crate) case: PathBuf,
-    /// Folder for the particle file; default: the name of the case without its extension.
+    /// Folder for the particle file; default: `runs/` and the name of the case with `-cloud`, with a number where that is taken.
     #[arg(long, value_name = "DIR")]
     pub(crate) out: Option<PathBuf>,
     #[command(flatten)]

@@ -4,8 +4,8 @@ use std::sync::Arc;
 
 use crate::math::{Vector, dense::Factors};
 use crate::motion::{BodyMotion, Freedom, Hinge, ModeShape, Role};
-use crate::scheme::{Fluid, Frame, View, Work};
-use crate::structure::{Energy, Floating, Model, Structure};
+use crate::scheme::View;
+use crate::structure::{Energy, Floating, Model, Placement, Structure};
 use crate::system::Fault;
 
 /// Greatest angle, in radians, and displacement, in units of a coordinate, that are believed.
@@ -103,22 +103,23 @@ impl<const D: usize> Attached<D> {
         frequencies.into_iter().chain(damped).fold(0.0, f64::max)
     }
 
-    /// Generalised forces of the gas on its coordinates.
+    /// How its coordinates place the body, for the unknowns `u` of all structures.
+    pub(super) fn placement(&self, u: &[f64]) -> Placement<D> {
+        self.structure.placement(&self.own(u)[0])
+    }
+
+    /// Adds to `load`, those of its coordinates, the generalised forces of the gas on the interface particles `walls` of its body.
     pub(super) fn add_loads(
         &self,
-        fluid: &Fluid<D>,
-        (frame, work): (&Frame<D>, &Work<D>),
-        u: &[f64],
+        view: &View<'_, D>,
+        placement: &Placement<D>,
+        walls: Range<usize>,
         load: &mut [f64],
     ) {
-        let [q, _] = self.own(u);
-        let placement = self.structure.placement(&q);
-        let before = &fluid.discretisation.cloud;
-        for (w, wall) in before.interface.iter().enumerate().filter(|(_, wall)| usize::from(wall.body) == self.body) {
-            debug_assert!(usize::from(wall.body) == self.body);
+        let before = view.reference();
+        for w in walls.filter(|w| usize::from(before.interface[*w].body) == self.body) {
             let bends = self.bends.get(w).map_or(&[][..], Vec::as_slice);
-            let force = View::new(fluid, frame, work).wall_force(w);
-            placement.add_work(&before.x[before.n_fluid + w], bends, &force, load);
+            placement.add_work(&before.x[before.n_fluid + w], bends, &view.wall_force(w), load);
         }
     }
 

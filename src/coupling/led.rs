@@ -6,7 +6,9 @@ use std::ops::Range;
 
 use super::{Coupled, CoupledPreconditioner, Frame, Work};
 use crate::structure::limit_cycle::Periodic;
-use crate::system::{Fault, Field, Hierarchy, Implicit, Instant, Period, Preconditioner, RightHandSide, Shift, System};
+use crate::system::{
+    Fault, Field, Hierarchy, Implicit, Instant, Name, Period, Preconditioner, Ranges, RightHandSide, Shift, System,
+};
 
 /// A gas and structures that are led.
 pub struct Led<'a, const D: usize> {
@@ -20,7 +22,7 @@ pub struct Led<'a, const D: usize> {
 impl<'a, const D: usize> Led<'a, D> {
     /// The structures of `coupled` in the motion `motion` of angular frequency `omega` about their coordinates in the state `state`.
     pub fn new(coupled: &'a Coupled<D>, state: &[f64], motion: &'a Periodic, omega: f64) -> Self {
-        Self { coupled, rest: state[coupled.sprung()].to_vec(), motion, omega }
+        Self { coupled, rest: state[coupled.unknowns_of(Name::Structure)].to_vec(), motion, omega }
     }
 
     /// Coordinate `k` and its rate at the time `t`.
@@ -36,7 +38,7 @@ impl<'a, const D: usize> Led<'a, D> {
     }
 
     fn own(&self) -> Range<usize> {
-        self.coupled.sprung()
+        self.coupled.unknowns_of(Name::Structure)
     }
 
     /// Puts R of the structures in the frame `frame` at the state `u`.
@@ -60,7 +62,7 @@ impl<const D: usize> System for Led<'_, D> {
         self.coupled.fields()
     }
 
-    fn placing(&self) -> Range<usize> {
+    fn placing(&self) -> &Ranges {
         self.coupled.placing()
     }
 

@@ -16,9 +16,10 @@ use super::solids::{OnCloud, Work as SolidWork};
 use super::{Coupled, Frame, Work};
 use crate::math::Vector;
 use crate::math::conjugate::{Symmetric, conjugate_gradients};
-use crate::math::sweep::{sum, sweep_rows};
+use crate::math::parallel::sweep_rows;
+use crate::math::reduce::{first, maximum, sum};
 use crate::scheme::{Taken, View};
-use crate::system::{Instant, Mechanical, System, rows};
+use crate::system::{Instant, Mechanical, Name, System, rows};
 use crate::time::explicit::{Plan, SSPRK3, Stage};
 use crate::time::{CROWDED, Cost, Integrator, Mark, Memory, Past, Standing, Step, TimeError};
 
@@ -84,7 +85,7 @@ impl<'a, const D: usize> March<'a, D> {
             frame,
             work: system.work(),
             start: u.clone(),
-            du: vec![0.0; system.gas_range().len()],
+            du: vec![0.0; system.unknowns_of(Name::Gas).len()],
             rate: vec![0.0; rows(system.fields())],
             meetings: vec![blank; on.walls.len()],
             velocity: vec![Vector::ZERO; n],
@@ -97,17 +98,17 @@ impl<'a, const D: usize> March<'a, D> {
 
     /// The longest stable step of the gas, given how fast particles move now.
     fn step_length(&mut self) -> f64 {
-        let gas = &self.u[self.system.gas_range()];
-        let rate = &mut self.rate[..self.system.fields()[0].rows];
+        let gas = &self.u[self.system.unknowns_of(Name::Gas)];
+        let rate = &mut self.rate[self.system.rows_of(Name::Gas)];
         self.system.fluid().rates(&self.frame.gas, gas, &mut self.work.gas, rate);
-        self.plan.cfl / rate.iter().fold(0.0f64, |m, r| m.max(*r))
+        self.plan.cfl / maximum(rate.len(), |i| rate[i])
     }
 
     /// What the gas does to the walls at the start of a step.
     fn meet(&mut self) {
         let fluid = self.system.fluid();
         self.frame.gas.taken = Arc::default();
-        fluid.fill_states(&self.frame.gas, &self.u[self.system.gas_range()], &mut self.work.gas);
+        fluid.fill_states(&self.frame.gas, &self.u[self.system.unknowns_of(Name::Gas)], &mut self.work.gas);
         if fluid.viscous_model.is_some() {
             fluid.fill_gradients(&self.frame.gas, &mut self.work.gas);
         }
@@ -131,10 +132,10 @@ impl<'a, const D: usize> March<'a, D> {
     /// Takes the solids through a step of the gas of length `dt`.
     fn solids(&mut self, dt: f64) {
         let solids = &self.on.solids;
-        let (own, storage) = (self.system.solid_range(), self.work.solids.as_mut());
+        let (own, storage) = (self.system.unknowns_of(Name::Solid), self.work.solids.as_mut());
         let Some(work) = storage else { return };
         solids.split(&self.u[own.clone()], work);
-        let remembered = self.system.history_range();
+        let remembered = self.system.unknowns_of(Name::History);
         if !remembered.is_empty() {
             work.history.copy_from_slice(&self.u[remembered.clone()]);
         }
@@ -169,8 +170,8 @@ impl<'a, const D: usize> March<'a, D> {
     /// Brings the cloud to part of the way through the step of length `dt` that begins now.
     fn place(&mut self, dt: f64, fraction: f64) {
         let placing = self.system.placing();
-        let ends = [&self.start[placing.clone()], &self.u[placing]];
-        let at = Instant::between(self.past.time, dt, fraction, ends);
+        let ends = [placing.values(&self.start), placing.values(&self.u)];
+        let at = Instant::between(self.past.time, dt, fraction, [&ends[0], &ends[1]]);
         self.system.fluid().place(&at, &mut self.frame.gas);
         self.frame.steady = false;
     }
@@ -190,7 +191,7 @@ impl<'a, const D: usize> March<'a, D> {
     fn stage(&mut self, s: &Stage, dt: f64) {
         self.place(dt, s.time);
         self.hand_over(dt);
-        let range = self.system.gas_range();
+        let range = self.system.unknowns_of(Name::Gas);
         let (gas, frame) = (&mut self.u[range.clone()], &mut self.frame.gas);
         self.system.fluid().rhs_with_boundary(gas, &mut self.work.gas, frame, &mut self.du);
         let (start, du) = (&self.start[range], &self.du);
@@ -201,13 +202,14 @@ impl<'a, const D: usize> March<'a, D> {
 
 /// The frame at the end of the last step; at the start, walls come with the velocity of the bodies.
 fn frame_after<const D: usize>(system: &Coupled<D>, on: &OnCloud<D>, past: &Past, u: &[f64]) -> Frame<D> {
-    let (end, step, now) = (past.time, past.last, &u[system.placing()]);
-    if let Some(before) = past.before.get(system.placing()).filter(|_| step > 0.0) {
-        return system.frame(&Instant::between(end - step, step, 1.0, [before, now]), u);
+    let (end, step, now) = (past.time, past.last, system.placing().values(u));
+    if step > 0.0 && !past.before.is_empty() {
+        let before = system.placing().values(&past.before);
+        return system.frame(&Instant::between(end - step, step, 1.0, [&before, &now]), u);
     }
     let step = BEFORE / on.solids.omega;
     let before: Vec<f64> = now.chunks_exact(2).flat_map(|pair| [pair[0] - step * pair[1], pair[1]]).collect();
-    system.frame(&Instant::between(end - step, step, 1.0, [&before, now]), u)
+    system.frame(&Instant::between(end - step, step, 1.0, [&before, &now]), u)
 }
 
 /// Velocities by the forces of neighbours in `work` and those of the gas at the end of `tau`; the work of the latter on the particles.
@@ -271,14 +273,14 @@ fn implicit<const D: usize>(
     let at = |i: &u32| free(*i as usize, load[*i as usize] + Vector(force[*i as usize]) * per);
     let mut right: Vec<Vector<D>> = surface.iter().map(at).collect();
     let mut found = vec![Vector::ZERO; surface.len()];
-    let size = right.iter().map(Vector::max_abs).fold(f64::MIN_POSITIVE, f64::max);
+    let size = maximum(right.len(), |k| right[k].max_abs()).max(f64::MIN_POSITIVE);
     let (spread, pushed) = (change, load);
     conjugate_gradients(
         &mut found,
         &mut right,
         ITERATIONS,
         Symmetric {
-            enough: |r: &[Vector<D>]| r.iter().all(|r| r.max_abs() <= SOLVED * size),
+            enough: |r: &[Vector<D>]| first(r.len(), |k| !(r[k].max_abs() <= SOLVED * size)).is_none(),
             product: |q: &[Vector<D>], out: &mut [Vector<D>]| {
                 for (q, i) in q.iter().zip(surface) {
                     (spread[*i as usize], pushed[*i as usize]) = (free(*i as usize, *q), Vector::ZERO);

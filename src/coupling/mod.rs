@@ -22,13 +22,12 @@ pub use bodies::{Attached, body_motion};
 pub use march::March;
 pub use preconditioner::CoupledPreconditioner;
 
-use std::ops::Range;
-
-use crate::math::sweep::sweep_rows;
+use crate::math::parallel::fill;
+use crate::math::reduce::{largest_size, sum, sum_each};
 use crate::scheme::{self, Exchange, Fluid, HasGas, View};
 use crate::solid::Solid;
 use crate::solid::forces::State;
-use crate::system::{Fault, Field, Instant, Rate, System};
+use crate::system::{Fault, Field, Instant, Name, Ranges, Rate, System, placed};
 use crate::time::explicit::{Explicit, Plan};
 use crate::time::{Integrator, Past};
 
@@ -43,6 +42,7 @@ pub struct Coupled<const D: usize> {
     bodies: Vec<Attached<D>>,
     solids: Option<OnCloud<D>>,
     fields: Vec<Field>,
+    placing: Ranges,
     /// Highest natural frequency of the structures.
     fastest: f64,
     /// The structures are held where they begin.
@@ -77,6 +77,8 @@ pub struct Work<const D: usize> {
     pub gas: scheme::Work<D>,
     /// Generalised forces of the gas on all coordinates.
     pub load: Vec<f64>,
+    /// Sums of chunks of walls on the way to them.
+    chunks: Vec<f64>,
     /// That of bodies made of particles.
     pub solids: Option<solids::Work<D>>,
 }
@@ -86,19 +88,21 @@ impl<const D: usize> Coupled<D> {
     /// with the same first coordinate share one structure, and its forces are those on all of them.
     pub fn new(fluid: Fluid<D>, bodies: Vec<Attached<D>>) -> Self {
         let count = bodies.iter().map(|b| b.range().end).max().unwrap_or(0);
-        let fields = vec![fluid.fields()[0], Field::new("structure", count, 2)];
-        let fastest = bodies.iter().map(Attached::fastest).fold(SLOWEST, f64::max);
-        Self { fluid, bodies, solids: None, fields, fastest, held: false }
+        let structure = Field::new(Name::Structure, count, 2);
+        let fields: Vec<Field> = fluid.fields().iter().copied().chain([structure]).collect();
+        let (fastest, placing) = (bodies.iter().map(Attached::fastest).fold(SLOWEST, f64::max), placing(&fields));
+        Self { fluid, bodies, solids: None, fields, placing, fastest, held: false }
     }
 
     /// The same with bodies made of particles.
     pub fn with_solids(mut self, solids: OnCloud<D>) -> Self {
-        self.fields.truncate(2);
+        self.fields.retain(|field| field.cloud != Name::Solid);
         let solid = &solids.solids.structure.solid;
-        self.fields.push(Field::new("solid", solid.len(), 2 * D));
+        self.fields.push(Field::new(Name::Solid, solid.len(), 2 * D));
         if solid.remembers() {
-            self.fields.push(Field::new("history", solid.len(), solid.history_width()));
+            self.fields.push(Field::new(Name::History, solid.len(), solid.history_width()).on(Name::Solid));
         }
+        self.placing = placing(&self.fields);
         self.solids = Some(solids);
         self
     }
@@ -106,24 +110,6 @@ impl<const D: usize> Coupled<D> {
     /// Bodies made of particles.
     pub fn solids(&self) -> Option<&OnCloud<D>> {
         self.solids.as_ref()
-    }
-
-    /// The unknowns of bodies on springs.
-    fn sprung(&self) -> Range<usize> {
-        let first = self.fields[0].len();
-        first..first + self.fields[1].len()
-    }
-
-    /// The unknowns of bodies made of particles.
-    pub fn solid_range(&self) -> Range<usize> {
-        let first = self.sprung().end;
-        first..first + self.fields.get(2).map_or(0, Field::len)
-    }
-
-    /// What their materials remember among the unknowns.
-    pub fn history_range(&self) -> Range<usize> {
-        let first = self.solid_range().end;
-        first..first + self.fields.get(3).map_or(0, Field::len)
     }
 
     /// The gas.
@@ -138,12 +124,7 @@ impl<const D: usize> Coupled<D> {
 
     /// Number of coordinates of all structures.
     pub fn n_coordinates(&self) -> usize {
-        self.fields[1].rows
-    }
-
-    /// Unknowns of the gas.
-    pub fn gas_range(&self) -> Range<usize> {
-        0..self.fields[0].len()
+        self.rows_of(Name::Structure).len()
     }
 
     /// The state in which the gas is `gas` and the structures are where they begin.
@@ -155,12 +136,16 @@ impl<const D: usize> Coupled<D> {
         gas.iter().copied().chain(sprung).chain(solids).chain(virgin).collect()
     }
 
-    /// Generalised forces of the walls whose states are in `work`, for coordinates with the unknowns `u` of the structures.
-    fn loads(&self, frame: &scheme::Frame<D>, work: &scheme::Work<D>, u: &[f64], load: &mut [f64]) {
-        load.fill(0.0);
-        for body in &self.bodies {
-            body.add_loads(&self.fluid, (frame, work), u, &mut load[body.range()]);
-        }
+    /// Sets `work.load` to the generalised forces of the walls whose states are in `work`, for coordinates with the unknowns `u` of the structures.
+    fn loads(&self, frame: &scheme::Frame<D>, u: &[f64], work: &mut Work<D>) {
+        let Work { gas, load, chunks, .. } = work;
+        let view = View::new(&self.fluid, frame, gas);
+        let placements: Vec<_> = self.bodies.iter().map(|body| body.placement(u)).collect();
+        sum_each(view.reference().interface.len(), load, chunks, |walls, load| {
+            for (body, placement) in self.bodies.iter().zip(&placements) {
+                body.add_loads(&view, placement, walls.clone(), &mut load[body.range()]);
+            }
+        });
     }
 
     /// What rates are sought for.
@@ -172,40 +157,48 @@ impl<const D: usize> Coupled<D> {
         }
     }
 
-    /// d/dt of the unknowns `u` of the structures under the walls whose states are in `work`.
-    fn structures(&self, frame: &Frame<D>, u: &[f64], work: &mut Work<D>, change: &mut [f64]) {
-        self.loads(&frame.gas, &work.gas, u, &mut work.load);
+    /// d/dt of the unknowns of the structures in the state `u` under the walls whose states are in `work`.
+    fn structures(&self, frame: &Frame<D>, u: &[f64], work: &mut Work<D>, du: &mut [f64]) {
+        let sprung = self.unknowns_of(Name::Structure);
+        self.loads(&frame.gas, &u[sprung.clone()], work);
         for body in &self.bodies {
-            let (own, load) = (2 * body.first..2 * body.range().end, &work.load[body.range()]);
-            match (self.held, frame.steady) {
-                (true, _) => body.towards_start(&u[own.clone()], self.fastest, &mut change[own]),
-                (_, true) => body.towards_rest(&u[own.clone()], load, self.fastest, &mut change[own]),
-                _ => body.rates(frame.gas.time, &u[own.clone()], load, &mut change[own]),
+            let load = &work.load[body.range()];
+            let own = sprung.start + 2 * body.first..sprung.start + 2 * body.range().end;
+            let (u, du) = (&u[own.clone()], &mut du[own]);
+            match self.pace(frame) {
+                Pace::Held => body.towards_start(u, self.fastest, du),
+                Pace::Steady => body.towards_rest(u, load, self.fastest, du),
+                Pace::Marching => body.rates(frame.gas.time, u, load, du),
             }
         }
-        let own = self.fields[1].len()..u.len();
         if let (Some(on), Some(storage)) = (&self.solids, &mut work.solids) {
             on.load(&View::new(&self.fluid, &frame.gas, &work.gas), storage);
             let at = Moving { time: frame.gas.time, step: frame.step, jets: &frame.gas.jets, pace: self.pace(frame) };
-            let (solid, remembered) =
-                (own.start..own.start + on.solids.len() * 2 * D, own.start + on.solids.len() * 2 * D..u.len());
-            change[own].fill(0.0);
+            let (solid, remembered) = (self.unknowns_of(Name::Solid), self.unknowns_of(Name::History));
             if !remembered.is_empty() {
-                storage.history.copy_from_slice(&u[remembered]);
+                storage.history.copy_from_slice(&u[remembered.clone()]);
             }
-            on.solids.rates(&at, &u[solid.clone()], storage, &mut change[solid]);
+            du[remembered].fill(0.0);
+            du[solid.clone()].fill(0.0);
+            on.solids.rates(&at, &u[solid.clone()], storage, &mut du[solid]);
         }
     }
+}
+
+/// The unknowns that place frames: coordinates of bodies on springs, and displacements.
+fn placing(fields: &[Field]) -> Ranges {
+    Ranges::of_fields(fields, &[Name::Structure, Name::Solid])
 }
 
 impl<const D: usize> Coupled<D> {
     /// The largest change of a coordinate of structures and solids in its unit; infinite if NaN.
     fn largest_move(&self, du: &[f64]) -> f64 {
-        let own = du[self.sprung()].chunks_exact(2).zip(self.bodies.iter().flat_map(|b| &b.units));
+        let own = &du[self.unknowns_of(Name::Structure)];
+        let units: Vec<f64> = self.bodies.iter().flat_map(|b| b.units.iter().copied()).collect();
+        let sprung = largest_size(units.len().min(own.len() / 2), |k| own[2 * k] / units[k]);
         let unit = self.solids.as_ref().map_or(1.0, |s| s.solids.length);
-        let solid = du[self.solid_range()].chunks_exact(2).map(|pair| pair[0].abs() / unit);
-        let all = own.map(|(pair, unit)| pair[0].abs() / unit).chain(solid);
-        all.fold(0.0, |m, c| if c.is_finite() { m.max(c) } else { f64::INFINITY })
+        let solid = &du[self.unknowns_of(Name::Solid)];
+        largest_size(solid.len() / 2, |k| solid[2 * k] / unit).max(sprung)
     }
 }
 
@@ -217,17 +210,17 @@ impl<const D: usize> System for Coupled<D> {
         &self.fields
     }
 
-    fn placing(&self) -> Range<usize> {
-        self.fields[0].len()..self.solid_range().end
+    fn placing(&self) -> &Ranges {
+        &self.placing
     }
 
     fn work(&self) -> Work<D> {
         let solids = self.solids.as_ref().map(|s| s.solids.work());
-        Work { gas: self.fluid.work(), load: vec![0.0; self.n_coordinates()], solids }
+        Work { gas: self.fluid.work(), load: vec![0.0; self.n_coordinates()], chunks: Vec::new(), solids }
     }
 
     fn frame(&self, at: &Instant<'_>, u: &[f64]) -> Frame<D> {
-        let gas = self.fluid.frame(at, &u[self.gas_range()]);
+        let gas = self.fluid.frame(at, &u[self.unknowns_of(Name::Gas)]);
         Frame { gas, steady: matches!(at.rate, Rate::Still), taken: None, step: step_of(&at.rate) }
     }
 
@@ -237,18 +230,15 @@ impl<const D: usize> System for Coupled<D> {
         frame.step = step_of(&at.rate);
     }
 
-    fn remembered(&self) -> Range<usize> {
-        self.history_range()
-    }
-
     fn settle(&self, frame: &Frame<D>, work: &mut Work<D>, u: &mut [f64]) {
-        let (own, Some((on, work))) = (self.history_range(), self.solids.as_ref().zip(work.solids.as_mut())) else {
+        let (own, Some((on, work))) = (self.unknowns_of(Name::History), self.solids.as_ref().zip(work.solids.as_mut()))
+        else {
             return;
         };
         if own.is_empty() || self.pace(frame) != Pace::Marching {
             return;
         }
-        on.solids.split(&u[self.solid_range()], work);
+        on.solids.split(&u[self.unknowns_of(Name::Solid)], work);
         work.history.copy_from_slice(&u[own.clone()]);
         on.solids.forces(frame.gas.time, frame.step, work);
         u[own].copy_from_slice(&work.after);
@@ -256,65 +246,66 @@ impl<const D: usize> System for Coupled<D> {
 
     fn prescribe(&self, time: f64, u: &mut [f64]) {
         if let Some(on) = self.solids.as_ref().filter(|_| !self.held) {
-            on.solids.prescribe(time, &mut u[self.solid_range()]);
+            on.solids.prescribe(time, &mut u[self.unknowns_of(Name::Solid)]);
         }
     }
 
     fn lead(&self, from: f64, to: f64, u: &mut [f64]) {
         if let Some(on) = &self.solids {
-            on.solids.lead(from, to, &mut u[self.solid_range()]);
+            on.solids.lead(from, to, &mut u[self.unknowns_of(Name::Solid)]);
         }
     }
 
     fn update_boundary_state(&self, u: &[f64], work: &mut Work<D>, frame: &mut Frame<D>) {
-        self.fluid.update_boundary_state(&u[self.gas_range()], &mut work.gas, &mut frame.gas);
+        self.fluid.update_boundary_state(&u[self.unknowns_of(Name::Gas)], &mut work.gas, &mut frame.gas);
     }
 
     fn rhs(&self, frame: &Frame<D>, u: &[f64], work: &mut Work<D>, du: &mut [f64]) {
-        let ((gas, u), (gas_change, change)) =
-            (u.split_at(self.fields[0].len()), du.split_at_mut(self.fields[0].len()));
-        self.fluid.rhs(&frame.gas, gas, &mut work.gas, gas_change);
-        self.structures(frame, u, work, change);
+        let gas = self.unknowns_of(Name::Gas);
+        self.fluid.rhs(&frame.gas, &u[gas.clone()], &mut work.gas, &mut du[gas]);
+        self.structures(frame, u, work, du);
     }
 
     fn rhs_with_boundary(&self, u: &[f64], work: &mut Work<D>, frame: &mut Frame<D>, du: &mut [f64]) {
-        let ((gas, u), (gas_change, change)) =
-            (u.split_at(self.fields[0].len()), du.split_at_mut(self.fields[0].len()));
-        self.fluid.rhs_with_boundary(gas, &mut work.gas, &mut frame.gas, gas_change);
-        self.structures(frame, u, work, change);
+        let gas = self.unknowns_of(Name::Gas);
+        self.fluid.rhs_with_boundary(&u[gas.clone()], &mut work.gas, &mut frame.gas, &mut du[gas]);
+        self.structures(frame, u, work, du);
     }
 
     fn rates(&self, frame: &Frame<D>, u: &[f64], work: &mut Work<D>, rate: &mut [f64]) {
-        let (gas, own) = rate.split_at_mut(self.fields[0].rows);
-        self.fluid.rates(&frame.gas, &u[self.gas_range()], &mut work.gas, gas);
-        let (sprung, solid) = own.split_at_mut(self.fields[1].rows);
-        sweep_rows(sprung, 1, |_, r| r[0] = self.fastest);
+        let gas = &mut rate[self.rows_of(Name::Gas)];
+        self.fluid.rates(&frame.gas, &u[self.unknowns_of(Name::Gas)], &mut work.gas, gas);
+        rate[self.rows_of(Name::Structure)].fill(self.fastest);
         if let Some(on) = &self.solids {
             let own = if self.pace(frame) == Pace::Marching { on.solids.brisk } else { on.solids.omega };
-            sweep_rows(solid, 1, |_, r| r[0] = own);
+            [Name::Solid, Name::History].into_iter().for_each(|name| fill(&mut rate[self.rows_of(name)], own));
         }
     }
 
     fn largest_change(&self, u: &[f64], du: &[f64]) -> f64 {
-        let gas = self.gas_range();
+        let gas = self.unknowns_of(Name::Gas);
         self.fluid.largest_change(&u[gas.clone()], &du[gas]).max(self.largest_move(du))
     }
 
     fn shorten(&self, u: &[f64], du: &mut [f64], largest: f64) {
-        let gas = self.gas_range();
+        let gas = self.unknowns_of(Name::Gas);
         self.fluid.shorten(&u[gas.clone()], &mut du[gas.clone()], largest);
         let change = self.largest_move(du);
         if change > largest && change.is_finite() {
-            du[gas.end..].iter_mut().for_each(|du| *du *= largest / change);
+            for at in placed(&self.fields).filter(|at| at.field.cloud != Name::Gas) {
+                du[at.unknowns].iter_mut().for_each(|du| *du *= largest / change);
+            }
         }
     }
 
     fn check(&self, frame: &Frame<D>, u: &[f64]) -> Result<(), Fault> {
-        self.bodies.iter().try_for_each(|b| b.check(&u[self.sprung()], self.fields[0].rows))?;
+        self.bodies
+            .iter()
+            .try_for_each(|b| b.check(&u[self.unknowns_of(Name::Structure)], self.rows_of(Name::Structure).start))?;
         if let Some(on) = &self.solids {
-            on.solids.check(&u[self.solid_range()], self.fields[0].rows + self.fields[1].rows)?;
+            on.solids.check(&u[self.unknowns_of(Name::Solid)], self.rows_of(Name::Solid).start)?;
         }
-        self.fluid.check(&frame.gas, &u[self.gas_range()])
+        self.fluid.check(&frame.gas, &u[self.unknowns_of(Name::Gas)])
     }
 
     fn check_frame(&self, frame: &Frame<D>) -> Result<(), Fault> {
@@ -322,13 +313,12 @@ impl<const D: usize> System for Coupled<D> {
     }
 
     fn locate(&self, frame: &Frame<D>, row: usize) -> Vec<f64> {
-        match row < self.fields[0].rows {
-            true => self.fluid.locate(&frame.gas, row),
-            false => {
-                let solid = row.checked_sub(self.fields[0].rows + self.fields[1].rows);
-                let place = |(on, i): (&OnCloud<D>, usize)| on.solids.structure.solid.particles.x[i].0.to_vec();
-                self.solids.as_ref().zip(solid).map(place).unwrap_or_default()
-            }
+        let Some(at) = placed(&self.fields).find(|at| at.rows.contains(&row)) else { return Vec::new() };
+        let particle = row - at.rows.start;
+        match (at.field.cloud, &self.solids) {
+            (Name::Gas, _) => self.fluid.locate(&frame.gas, particle),
+            (Name::Solid, Some(on)) => on.solids.structure.solid.particles.x[particle].0.to_vec(),
+            _ => Vec::new(),
         }
     }
 }
@@ -339,12 +329,10 @@ impl<const D: usize> HasGas<D> for Coupled<D> {
     }
 
     fn set_gas(&mut self, gas: Fluid<D>) {
-        self.fields[0] = gas.fields()[0];
+        let own = self.fields.iter_mut().filter(|field| field.cloud == Name::Gas);
+        own.zip(gas.fields()).for_each(|(field, new)| *field = *new);
+        self.placing = placing(&self.fields);
         self.fluid = gas;
-    }
-
-    fn gas_unknowns(&self) -> Range<usize> {
-        self.gas_range()
     }
 
     fn gas_frame<'a>(&self, frame: &'a Frame<D>) -> &'a scheme::Frame<D> {
@@ -364,27 +352,27 @@ impl<const D: usize> HasGas<D> for Coupled<D> {
     }
 
     fn exchange(&self, frame: &Frame<D>, u: &[f64], work: &mut Work<D>) -> Option<Exchange> {
-        let remembered = &u[self.history_range()];
-        let (gas, u, solid) = (&u[self.gas_range()], &u[self.sprung()], &u[self.solid_range()]);
+        let remembered = &u[self.unknowns_of(Name::History)];
+        let (gas, u, solid) =
+            (&u[self.unknowns_of(Name::Gas)], &u[self.unknowns_of(Name::Structure)], &u[self.unknowns_of(Name::Solid)]);
         self.fluid.fill_states(&frame.gas, gas, &mut work.gas);
         if self.fluid.viscous_model.is_some() {
             self.fluid.fill_gradients(&frame.gas, &mut work.gas);
         }
-        self.loads(&frame.gas, &work.gas, u, &mut work.load);
+        self.loads(&frame.gas, u, work);
         // by the rates of the difference formula, which move the walls: what these take is what the structures get
         let moved = |k: usize| frame.gas.jets.get(k).map_or(u[2 * k + 1], |jet| jet.first);
-        let power = work.load.iter().enumerate().map(|(k, load)| load * moved(k)).sum();
+        let power = sum(work.load.len(), |k| work.load[k] * moved(k));
         let cloud = &frame.gas.discretisation.cloud;
         let velocity = |w: usize| frame.gas.to_inertial_axes(&frame.gas.velocity_of(cloud.n_fluid + w));
         let solids = self.solids.iter().flat_map(|s| &s.solids.bodies).map(|b| b.body);
         let carried: Vec<usize> = self.bodies.iter().map(|b| b.body).chain(solids).collect();
-        let attached = |w: &usize| carried.contains(&usize::from(cloud.interface[*w].body));
-        let walls = (0..cloud.interface.len()).filter(attached);
+        let attached = |w: usize| carried.contains(&usize::from(cloud.interface[w].body));
         let view = View::new(&self.fluid, &frame.gas, &work.gas);
         let by_state = |w: usize| view.wall_force(w).dot(&velocity(w));
         let on_wall =
             |w: usize| frame.gas.taken.get(w).filter(|t| t.area > 0.0).map_or_else(|| by_state(w), |t| t.power);
-        let wall_power = walls.map(on_wall).sum();
+        let wall_power = sum(cloud.interface.len(), |w| if attached(w) { on_wall(w) } else { 0.0 });
         let mut all = Exchange { power, wall_power, ..Exchange::default() };
         for body in &self.bodies {
             body.range().for_each(|k| all.push([u[2 * k], u[2 * k + 1], work.load[k]]));
@@ -398,7 +386,7 @@ impl<const D: usize> HasGas<D> for Coupled<D> {
         if let (Some(on), Some(work)) = (&self.solids, &mut work.solids) {
             on.load(&view, work);
             on.solids.split(solid, work);
-            if !self.history_range().is_empty() {
+            if !self.unknowns_of(Name::History).is_empty() {
                 work.history.copy_from_slice(remembered);
             }
             if !frame.steady && frame.taken.is_none() {
@@ -481,22 +469,22 @@ impl<const D: usize> Marches<D> for Coupled<D> {
     }
 
     fn generalised_forces(&self, frame: &Frame<D>, u: &[f64], work: &mut Work<D>) -> Vec<f64> {
-        self.fluid.fill_states(&frame.gas, &u[self.gas_range()], &mut work.gas);
+        self.fluid.fill_states(&frame.gas, &u[self.unknowns_of(Name::Gas)], &mut work.gas);
         if self.fluid.viscous_model.is_some() {
             self.fluid.fill_gradients(&frame.gas, &mut work.gas);
         }
-        self.loads(&frame.gas, &work.gas, &u[self.sprung()], &mut work.load);
+        self.loads(&frame.gas, &u[self.unknowns_of(Name::Structure)], work);
         work.load.clone()
     }
 
     fn solid_snapshot(&self, frame: &Frame<D>, u: &[f64]) -> Option<SolidSnapshot<'_, D>> {
         let on = self.solids.as_ref()?;
         let mut work = on.solids.work();
-        on.solids.split(&u[self.solid_range()], &mut work);
+        on.solids.split(&u[self.unknowns_of(Name::Solid)], &mut work);
         if !frame.steady && frame.taken.is_none() {
             on.solids.by_formula(&frame.gas.jets, &mut work);
         }
-        let own = self.history_range();
+        let own = self.unknowns_of(Name::History);
         let history = if own.is_empty() { work.history } else { u[own].to_vec() };
         let solid = &on.solids.structure.solid;
         Some(SolidSnapshot { solid, displacement: work.displacement, velocity: work.velocity, history })

@@ -16,8 +16,9 @@ use std::sync::{Arc, OnceLock};
 
 use crate::math::Vector;
 use crate::math::jet::Jet;
+use crate::math::parallel::sweep_slots;
+use crate::math::reduce::sum;
 use crate::math::sparse::Factors;
-use crate::math::sweep::sweep_slots;
 use crate::motion::{BodyMotion, RigidPose, SurfaceNet};
 use crate::scheme::{Fluid, View};
 use crate::solid::Structure;
@@ -467,10 +468,11 @@ impl<const D: usize> Solids<D> {
         let mass = self.structure.solid.mass();
         let mut all = Vec::new();
         for body in &self.bodies {
-            let whole: f64 = body.particles.clone().map(|i| mass[i]).sum();
+            let sum = |f: &(dyn Fn(usize) -> f64 + Sync)| sum(body.particles.len(), |k| f(body.particles.start + k));
+            let whole = sum(&|i| mass[i]);
             for a in 0..D {
-                let mean = |q: &[[f64; D]]| body.particles.clone().map(|i| mass[i] * q[i][a]).sum::<f64>() / whole;
-                let load = body.particles.clone().map(|i| work.load[i][a]).sum();
+                let mean = |q: &[[f64; D]]| sum(&|i| mass[i] * q[i][a]) / whole;
+                let load = sum(&|i| work.load[i][a]);
                 all.push([mean(&work.displacement), mean(&work.velocity) / self.scales.speed, load]);
             }
             for i in &body.probes {
@@ -519,8 +521,7 @@ impl<const D: usize> OnCloud<D> {
     /// Σ f·w of the gas on the particles, with velocities of these by the formula that serves the state.
     pub(super) fn power(&self, jets: &[Jet], work: &Work<D>) -> f64 {
         let jet = |k: usize| jets.get(self.solids.first + k).map_or(0.0, |j| j.first);
-        let of = |(i, f): (usize, &Vector<D>)| (0..D).map(|a| f[a] * jet(i * D + a)).sum::<f64>();
-        work.load.iter().enumerate().map(of).sum()
+        sum(work.load.len(), |i| (0..D).map(|a| work.load[i][a] * jet(i * D + a)).sum())
     }
 }
 

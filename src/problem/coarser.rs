@@ -5,6 +5,7 @@
 use super::numerics;
 use super::spacing::{asked, scaled};
 use crate::case::Case;
+use crate::math::digits::short;
 
 /// Spacing of the coarser cloud over that of the case, and of the third one where there are shocks.
 pub(crate) const COARSER: f64 = 2.0;
@@ -12,7 +13,7 @@ pub(crate) const BETWEEN: f64 = 1.5;
 
 /// How wide the spacing of a cloud is beside that of another, for people.
 pub(crate) fn times_the_spacing(ratio: f64) -> String {
-    if ratio == 2.0 { "twice the spacing".to_owned() } else { format!("{ratio} times the spacing") }
+    if ratio == 2.0 { "twice the spacing".to_owned() } else { format!("{} times the spacing", short(ratio)) }
 }
 
 /// The case `own`, whose spacing is known, with `ratio` times the spacing; `None` where that does not fit into the domain, and where clouds
@@ -60,7 +61,8 @@ mod tests {
 
     #[test]
     fn spacings_are_told_in_words() {
-        assert_eq!([COARSER, BETWEEN].map(times_the_spacing), ["twice the spacing", "1.5 times the spacing"]);
+        let told = [COARSER, BETWEEN, 2.0_f64.sqrt()].map(times_the_spacing);
+        assert_eq!(told, ["twice the spacing", "1.5 times the spacing", "1.41421 times the spacing"]);
     }
 
     #[test]

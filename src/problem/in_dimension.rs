@@ -16,6 +16,7 @@ use super::stream::{self, StreamRatio};
 use super::structures::{Described, bodies, check_equilibrium, described, with_steady_forces};
 use super::supported::supported;
 use crate::case::{Angle, AnyMode, Case, Cloud, FreeStreamScales, Gaf, GafMethod};
+use crate::cloud::CloudSpec;
 use crate::coupling::Attached;
 use crate::coupling::solids::Solids;
 use crate::geometry::Surface;
@@ -84,7 +85,8 @@ impl<const D: usize> ProblemIn<D> {
         let mut motions = prescribed.clone();
         let structures = bodies(&case, input, surface, &mut motions)?;
         let structures = with_steady_forces(structures, &self.forces, &case.flow.units())?;
-        remarks.extend(remarks_on(told_of(surface, &motions, &structures)));
+        let gas = CloudSpec::of_case(&case).limits();
+        remarks.extend(remarks_on(told_of((surface, &gas), &motions, &structures)));
         let described = described(&case, surface, &structures);
         let reference = case.flow.reference();
         let case = Arc::new(case);
@@ -184,7 +186,8 @@ impl<const D: usize> ProblemIn<D> {
         let (case, surface) = (self.case.gaf_steady_case(plan), self.surface());
         let mut laws = motions(&case, &self.input, surface)?;
         let attached = bodies(&case, &self.input, surface, &mut laws)?;
-        let told = remarks_on(told_of(surface, &laws, &attached));
+        let gas = CloudSpec::of_case(&case).limits();
+        let told = remarks_on(told_of((surface, &gas), &laws, &attached));
         Ok(told.filter(|remark| !self.remarks.contains(remark)).collect())
     }
 

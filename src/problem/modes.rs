@@ -44,9 +44,9 @@ pub(crate) struct ToldOfModes {
     pub(crate) warnings: Vec<String>,
 }
 
-/// What is told of modes that move bodies.
+/// What is told of modes that move bodies, as far as they lie within the box around the `gas`.
 pub(crate) fn told_of<'a, const D: usize>(
-    surface: Option<&Surface<D>>,
+    (surface, gas): (Option<&Surface<D>>, &Bounds<D>),
     motions: &'a Motions<D>,
     attached: &'a [Attached<D>],
 ) -> ToldOfModes {
@@ -63,8 +63,8 @@ pub(crate) fn told_of<'a, const D: usize>(
         let Some(file) = shape.file() else { continue };
         let warning = |r: &String| r.strip_prefix(WARNING).map(str::to_owned);
         let notes = shape.remarks().iter().filter(|r| warning(r).is_none()).cloned().collect();
-        let doubt =
-            beside(surface, one(body), shape).map(|doubt| format!("{doubt}; see `file = \"{file}\"` in the case"));
+        let doubt = beside((surface, gas), one(body), shape)
+            .map(|doubt| format!("{doubt}; see `file = \"{file}\"` in the case"));
         let warnings = shape.remarks().iter().filter_map(warning).chain(doubt).collect();
         told.add(notes, warnings);
     }
@@ -109,7 +109,11 @@ pub(super) fn lies_on<const D: usize>(
 }
 
 /// What is doubtful of a shape beside its body.
-fn beside<const D: usize>(surface: &Surface<D>, body: Option<usize>, shape: &ModeShape<D>) -> Option<String> {
+fn beside<const D: usize>(
+    (surface, gas): (&Surface<D>, &Bounds<D>),
+    body: Option<usize>,
+    shape: &ModeShape<D>,
+) -> Option<String> {
     let file = shape.file()?;
     let (name, walls) = named(surface, body);
     let points = box_of(shape);
@@ -125,11 +129,16 @@ fn beside<const D: usize>(surface: &Surface<D>, body: Option<usize>, shape: &Mod
         let (points, walls) = (told(&points), told(&walls));
         return Some(format!("the points of mode `{file}` reach from {points}, but {name} from {walls}: {doubt}"));
     }
-    let longest = longest(&walls);
-    let (low, high) = (points.min[longest].max(walls.min[longest]), points.max[longest].min(walls.max[longest]));
-    let beyond = 1.0 - (high - low).max(0.0) / walls.extent()[longest];
+    // what a plane of symmetry cuts off is not computed
+    let computed = Bounds { min: walls.min.max(&gas.min), max: walls.max.min(&gas.max) };
+    let longest = longest(&computed);
+    let (low, high) = (points.min[longest].max(computed.min[longest]), points.max[longest].min(computed.max[longest]));
+    let beyond = 1.0 - (high - low).max(0.0) / computed.extent()[longest];
     let own = |e: &&Element<D>| body.is_none_or(|b| usize::from(e.body) == b);
-    let corners = || surface.elements.iter().filter(own).map(|e| &surface.vertices[e.vertices[0] as usize]);
+    let corners = || {
+        let all = surface.elements.iter().filter(own).map(|e| &surface.vertices[e.vertices[0] as usize]);
+        all.filter(|x| gas.contains(x))
+    };
     let every = corners().count().div_ceil(LOOKED_AT).max(1);
     let greatest = corners().step_by(every).map(|x| shape.at(x).norm()).fold(0.0, f64::max);
     let spreads = points.extent()[longest] > 0.0;
@@ -246,6 +255,25 @@ mod tests {
         said_of(&rows.collect::<String>())
     }
 
+    fn everywhere<const D: usize>() -> Bounds<D> {
+        Bounds { min: Vector::splat(f64::NEG_INFINITY), max: Vector::splat(f64::INFINITY) }
+    }
+
+    #[test]
+    fn the_half_that_is_not_computed_needs_no_points() {
+        let case =
+            crate::case::read("[flow]\nmach = 0.5\n[[body]]\nwing = { naca = \"0012\", span = 6, chord = 1 }\n", "t");
+        let surface = surface::<3>(&case.unwrap(), Path::new("")).unwrap().0.unwrap();
+        let rows: String =
+            (0..4).flat_map(|k| [0.0, 1.0].map(|x| format!("{x},{k},0,0,0,{}\n", 0.01 * f64::from(k * k)))).collect();
+        let text = format!("x,y,z,dx,dy,dz\n{rows}");
+        let shape = crate::motion::mode_shape::<3>("m.csv", &|_| Ok(text.clone())).unwrap();
+        let half = Bounds { min: Vector([f64::NEG_INFINITY, 0.0, f64::NEG_INFINITY]), ..everywhere() };
+        let told = |gas: &Bounds<3>| beside((&surface, gas), Some(0), &shape);
+        assert_eq!(told(&half), None);
+        assert!(told(&everywhere()).unwrap().contains("50 % of the length of body"));
+    }
+
     /// What is said of the rows of a file beside a section of unit chord.
     fn said_of(rows: &str) -> Result<Option<String>, String> {
         let case = crate::case::read("[flow]\nmach = 0.5\n[[body]]\nnaca = \"0012\"\n", "t").unwrap();
@@ -254,7 +282,7 @@ mod tests {
         let shape = crate::motion::mode_shape::<2>("m.csv", &|_| Ok(text.clone())).map_err(|e| e.to_string())?;
         assert!(shape.remarks().is_empty(), "{:?}", shape.remarks());
         lies_on(&surface, Some(0), &shape).map_err(|e| e.to_string())?;
-        Ok(beside(&surface, Some(0), &shape))
+        Ok(beside((&surface, &everywhere()), Some(0), &shape))
     }
 
     /// What is said of a bend whose points lie at the places `at` of x and of a half thickness.

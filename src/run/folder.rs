@@ -3,15 +3,16 @@ use std::fs::{self, File, TryLockError};
 use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 
-use super::record::saved;
 use crate::case::{Case, Cloud, Compare, open_regular, read, read_regular, write, write_cloud};
 use crate::geometry::dimension;
 use crate::observe::checkpoint;
+use crate::observe::sums;
 use crate::observe::table::UNFINISHED;
 use crate::observe::write_atomic;
 use crate::problem::RunError;
 use crate::problem::files::plain;
 use crate::report::check_reference;
+use crate::study::record::saved;
 
 /// Where the folder of the case file is noted.
 const ORIGIN: &str = "origin.txt";
@@ -95,6 +96,12 @@ pub(crate) fn create(case: &Case, input: &Path, out: &Path) -> Result<(bool, Hol
     })?;
     let lost = |source| RunError::LostInput { folder: input.display().to_string(), source };
     let origin = absolute(input).map_err(lost)?;
+    if out.join(KEPT).exists() {
+        check_files(out)?;
+        sums::renew(out, false)?;
+    } else {
+        sums::begin(out)?;
+    }
     // before the case, so that a case without it is one that no run has put there
     write_atomic(&out.join(ORIGIN), |w| writeln!(w, "{}", origin.display()))?;
     let held = hold(out)?;
@@ -176,6 +183,7 @@ fn occupied(out: &Path) -> RunError {
 
 /// Marks a run or matrices as finished: all files are written.
 pub(crate) fn finish(out: &Path) -> Result<(), RunError> {
+    sums::renew(out, true)?;
     let sums: String = ["case.toml", SUMMARY].iter().filter_map(|file| checksum(out, file)).collect();
     Ok(write_atomic(&out.join(FINISHED), |w| w.write_all(sums.as_bytes()))?)
 }
@@ -206,7 +214,7 @@ pub(crate) fn reopen(out: &Path) -> Result<(), RunError> {
             what: format!("cannot go on in the run folder `{}`: {e}", out.display()),
             hint: "make it writable".into(),
         }),
-        _ => Ok(()),
+        _ => Ok(sums::renew(out, false)?),
     }
 }
 
@@ -228,10 +236,17 @@ pub(crate) fn finished(out: &Path) -> Option<serde_json::Value> {
     serde_json::from_str(&summary).ok()
 }
 
-/// Refuses a summary that was changed since the run that wrote it ended.
-pub(crate) fn check_summary(out: &Path) -> Result<(), RunError> {
+/// Refuses a folder with a file of records that was changed since the run wrote it: tables, summaries, checkpoints, what is kept of a boundary.
+pub(crate) fn check_files(out: &Path) -> Result<(), RunError> {
     let mark = plain(&out.join(FINISHED)).unwrap_or_default();
-    // versions that did not ask have no such line
+    let list = out.join(sums::FILE);
+    if !list.is_file() {
+        return Err(RunError::Folder {
+            what: format!("`{}` is not there: it says which numbers the run wrote itself", list.display()),
+            hint: "put it back, or begin the run again in another folder".into(),
+        });
+    }
+    sums::check(out)?;
     let told = mark.lines().find(|line| line.starts_with(SUMMARY));
     if told.is_none_or(|told| checksum(out, SUMMARY).is_some_and(|sum| sum.trim_end() == told)) {
         return Ok(());
@@ -251,7 +266,10 @@ fn checksum(out: &Path, file: &str) -> Option<String> {
 /// Refuses to go on where no checkpoint was written.
 pub(crate) fn check_begun(out: &Path) -> Result<(), RunError> {
     if has_begun(out) {
-        return Ok(());
+        return check_files(out);
+    }
+    if out.join(sums::FILE).is_file() {
+        sums::check(out)?;
     }
     let (named, file) = (out.display(), saved::FILE);
     if out.join(MATRICES).exists() {

@@ -1,20 +1,19 @@
-//! Generalised aerodynamic forces: for each mode and reduced frequency a linear system about one steady flow, or two harmonic balances.
-mod balance;
-mod cloud_error;
-mod linear;
-mod record;
-
-pub use record::{CONVENTION, Column, Conditions, Errors, Matrices, Solved};
-
+//! Generalised aerodynamic forces in folders.
 use std::path::Path;
 
+use num_complex::Complex64;
+use serde_json::json;
+
 use super::folder::{self, Places};
-use super::monitor::Monitor;
 use super::refusals;
-use crate::case::{Case, Gaf, GafMethod};
+use crate::case::{Case, GafMethod};
 use crate::geometry::dimension;
-use crate::observe::columns::Scale;
-use crate::problem::{Problem, RunError, supported};
+use crate::observe::columns::{Scale, describe_tables};
+use crate::observe::table::{Entry, write_csv, write_json};
+use crate::problem::{Problem, RunError};
+use crate::study::Monitor;
+pub use crate::study::gaf::{CONVENTION, Column, Conditions, Errors, Matrices, Solved};
+use crate::study::gaf::{blank, found, planned};
 
 /// Computes the matrices of the table `[gaf]` into a fresh folder, or one where those of the same case were not all found; `None` when the
 /// monitor says stop.
@@ -45,19 +44,6 @@ pub fn in_memory(case: &Case, input: &Path, monitor: &mut dyn Monitor) -> Result
     Ok(whole.then_some(matrices))
 }
 
-/// Finds all columns and calls `keep` after each; false when the monitor says stop.
-fn found(
-    plan: (&Problem, &Gaf),
-    matrices: &mut Matrices,
-    keep: &mut dyn FnMut(&Matrices) -> Result<(), RunError>,
-    monitor: &mut dyn Monitor,
-) -> Result<bool, RunError> {
-    match plan.1.method {
-        GafMethod::Linear => linear::columns(plan, matrices, keep, monitor),
-        GafMethod::Balance => balance::columns(plan, matrices, keep, monitor),
-    }
-}
-
 /// Refuses matrices of which it is known before any flow that they cannot be computed.
 pub(super) fn rehearse(case: &Case, input: &Path) -> Result<(), RunError> {
     let plan = planned(case)?;
@@ -71,20 +57,64 @@ pub(super) fn rehearse(case: &Case, input: &Path) -> Result<(), RunError> {
     plan.all_modes().try_for_each(rehearsed)
 }
 
-fn planned(case: &Case) -> Result<Gaf, RunError> {
-    let Some(plan) = case.gaf.clone() else {
-        return Err(RunError::Unsupported {
-            what: "the case has no table `[gaf]`".into(),
-            hint: "add one with `reduced_frequencies`",
+impl Matrices {
+    /// Writes `gaf.csv`, a row for each column of the matrices, and `gaf.json`.
+    fn write(&self, frequencies: &[f64], scale: Scale, out: &Path) -> Result<(), RunError> {
+        let bounded = self.columns.iter().any(|c| c.errors.is_some());
+        let rows = self.columns.iter().map(|c| {
+            let mut row = vec![Entry::from(c.k), Entry::from(c.mode.as_str())];
+            for [re, im] in [c.cl, c.cm] {
+                let value = Complex64::new(re, im);
+                row.extend([re, im, value.norm(), value.arg().to_degrees()].map(Entry::from));
+            }
+            row.extend(c.q.iter().flatten().map(|v| Entry::from(*v)));
+            row.extend(c.nonlinearity.map(Entry::from));
+            row.extend(c.solved.iter().flat_map(|s| [Entry::from(s.iterations as f64), Entry::from(s.left)]));
+            if bounded {
+                row.extend(c.bars().into_iter().map(Entry::from));
+            }
+            row
         });
-    };
-    supported(case)?;
-    Ok(plan)
-}
+        let parts = |load: &str| ["re", "im", "abs", "phase_deg"].map(|part| format!("{load}_{part}"));
+        let mut names: Vec<String> = ["k".into(), "mode".into()].into();
+        names.extend(["cl", "cm"].iter().flat_map(|load| parts(load)));
+        names.extend(self.modes.iter().flat_map(|m| [format!("q_{m}_re"), format!("q_{m}_im")]));
+        let linear = self.columns.iter().any(|c| c.solved.is_some());
+        let last: &[&str] = if linear { &["iterations", "left"] } else { &["nonlinearity"] };
+        names.extend(last.iter().map(|name| (*name).to_owned()));
+        if bounded {
+            names.extend(["cl_error".to_owned(), "cm_error".to_owned()]);
+            names.extend(self.modes.iter().map(|m| format!("q_{m}_error")));
+        }
+        let names: Vec<&str> = names.iter().map(String::as_str).collect();
+        write_csv(&out.join(super::folder::MATRICES), &names, rows)?;
+        describe_tables(out, scale, &[])?;
+        let c = &self.conditions;
+        let whole = json!({
+            "convention": CONVENTION,
+            "mach": c.mach,
+            "alpha_deg": c.alpha_deg,
+            "chord": c.chord,
+            "area": c.area,
+            "reduced_length": c.reduced_length,
+            "pivot": c.pivot,
+            "rows": ["cl", "cm"],
+            "modes": self.modes,
+            "matrices": frequencies.iter().map(|k| self.matrix(*k)).collect::<Vec<_>>(),
+            "columns": self.columns,
+        });
+        Ok(write_json(&out.join("gaf.json"), &whole)?)
+    }
 
-/// Matrices of which no column is known.
-fn blank(problem: &Problem, plan: &Gaf) -> Matrices {
-    let modes = plan.all_modes().map(|m| m.name().to_owned()).collect();
-    let (conditions, linearity) = (Conditions::of(problem, plan), plan.linearity.unwrap_or(Gaf::LINEARITY));
-    Matrices { modes, columns: Vec::new(), linearity, conditions }
+    /// Rows `cl` and `cm`, and the square matrix `q`: `q[i][j]` is the force on mode i that mode j makes.
+    fn matrix(&self, k: f64) -> serde_json::Value {
+        let columns: Vec<&Column> = self.columns.iter().filter(|c| c.k == k).collect();
+        let row = |i: usize| columns.iter().map(|c| c.q[i]).collect::<Vec<_>>();
+        json!({
+            "k": k,
+            "cl": columns.iter().map(|c| c.cl).collect::<Vec<_>>(),
+            "cm": columns.iter().map(|c| c.cm).collect::<Vec<_>>(),
+            "q": (0..self.modes.len()).map(row).collect::<Vec<_>>(),
+        })
+    }
 }

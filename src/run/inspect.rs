@@ -5,24 +5,25 @@ use std::time;
 use serde::Serialize;
 
 use super::about;
-use super::accuracy;
-use super::cost::{Cost, OF_COLUMN, Sized};
 use super::files::{Scene, Target, pixels, write_cloud};
 use super::folder;
-use super::look::{Held, Mesh, Rim, load_axes};
 use super::pilot;
-use super::setup::{self, Solver};
 use super::solids;
-use super::stage::Stage;
 use super::understood::{Aeroelastic, Understood};
 use crate::case::{Case, GafMethod};
 use crate::cloud::layout::{capped, count};
 use crate::cloud::{Cloud, CloudSpec, Diagnosis};
+use crate::math::reduce::maximum;
 use crate::observe::table::write_json;
 use crate::observe::vtk::{Column, write_cells};
 use crate::problem::solids::{told_of_own_modes, with_gas};
 use crate::problem::{Problem, ProblemIn, Remark, RunError, check_motion, numerics, rough, spacing};
 use crate::scheme::{Fluid, Frame, View};
+use crate::study::accuracy;
+use crate::study::cost::{Cost, OF_COLUMN, Sized};
+use crate::study::look::{Held, Mesh, Rim, load_axes};
+use crate::study::setup::{self, Solver};
+use crate::study::stage::Stage;
 use crate::system::{Instant, System};
 
 /// Evaluations timed for the estimate.
@@ -158,7 +159,7 @@ fn look<const D: usize>(
     let fastest = || {
         let mut rate = vec![0.0; fluid.discretisation.cloud.n_fluid];
         fluid.rates(&frame, u, &mut fluid.work(), &mut rate);
-        rate.iter().fold(0.0f64, |m, r| m.max(*r))
+        maximum(rate.len(), |i| rate[i])
     };
     let cloud = &fluid.discretisation.cloud;
     let n_fluid = (cloud.n_fluid as f64 * seen.more).round() as usize;

@@ -11,42 +11,30 @@
 //! `course` (the way through the stages, and what many flows on the same clouds leave to one another), `session`; on top of it `error_bars` (further runs), [`gaf`] and [`verify`], and `refusals` (what keeps a case
 //! from being computed).
 mod about;
-mod accuracy;
+mod checkpoint;
 mod cloud_table;
-mod cost;
-mod course;
-mod disk;
-mod doubts;
 mod error_bars;
 mod files;
-mod flow;
 pub mod flutter;
 mod folder;
-mod found;
 pub mod gaf;
 mod inspect;
-mod look;
+mod journal;
+mod keeper;
 mod measure;
-mod monitor;
 mod outcome;
 mod pilot;
-mod recipe;
-mod record;
+mod polar_table;
 mod refusals;
 mod resumed;
+mod room;
 mod session;
-mod setup;
 mod shape;
 mod solids;
-mod solution;
-mod stage;
-mod studies;
 #[cfg(test)]
 mod tests;
-mod time_left;
 mod understood;
 pub mod verify;
-mod watch;
 
 use std::path::{Path, PathBuf};
 
@@ -59,38 +47,28 @@ use crate::scheme::Fluid;
 
 pub use crate::problem::{Blame, RunError};
 pub use cloud_table::{CloudTable, cloud_table};
-pub use cost::Cost;
 pub use error_bars::solve;
 pub use folder::{Places, fresh_folder};
 pub use inspect::{CloudReport, NeighbourCount, SpacingRange, inspect};
-pub use look::forces::GeneralisedForce;
-pub use look::friction::Separation;
-pub use look::{Snapshot, TipVortex, WakePlane, WallSnapshot};
-pub use monitor::{MarchTick, Monitor, Silent, Tick};
 pub use outcome::Outcome;
-pub use record::IterationHistory;
-pub use record::crosscheck::{Apart as LoadsApart, LoadCrosscheck};
-pub use record::polar::PolarPoint;
-pub use record::solid_end::{ProbeEnd, SolidEnd};
-pub use record::summary::{Apart, BalanceReport, Ledger, MarchingCheck, Reclouding, Summary};
-pub use record::trace::{Change, FirstHarmonics, LastPeriod, PeriodicLoads};
 pub use refusals::refusals;
 pub use resumed::continued;
 pub use session::Session;
 pub use shape::{BodyTable, Measures, body_table};
-pub use solids::{
-    Ended as SolidOutcome, ModeRow, PeriodicRow, ProbeHarmonic, ProbeRow, SolidLedger, SolidReport, SolidSolution,
-    SolidSummary, inspect_structure,
-};
-pub use solution::Solution;
-pub use time_left::{Portion, TimeLeft};
-pub use understood::{
-    Aeroelastic, BodyBox, ReferenceValues, Understood, UnderstoodFlutter, UnderstoodGaf, UnderstoodStructure,
-};
+pub use solids::{SolidReport, inspect_structure};
+pub use understood::{Aeroelastic, BodyBox, Understood, UnderstoodFlutter, UnderstoodGaf, UnderstoodStructure};
 
-use flow::Origin;
-use record::saved::Saved;
-use stage::Stage;
+use crate::study::flow::Origin;
+use crate::study::solids::SolidsKeeper;
+use crate::study::stage::Stage;
+use crate::study::{self, setup};
+pub use crate::study::{
+    Apart, BalanceReport, Change, Cost, FirstHarmonics, GeneralisedForce, IterationHistory, LastPeriod, Ledger,
+    LoadCrosscheck, LoadsApart, MarchTick, MarchingCheck, ModeRow, Monitor, PeriodicLoads, PeriodicRow, PolarPoint,
+    Portion, ProbeEnd, ProbeHarmonic, ProbeRow, Reclouding, ReferenceValues, Separation, Silent, Snapshot, SolidEnd,
+    SolidLedger, SolidOutcome, SolidSolution, SolidSummary, Solution, Summary, Tick, TimeLeft, TipVortex, WakePlane,
+    WallSnapshot,
+};
 
 impl From<ReportError> for RunError {
     fn from(problem: ReportError) -> Self {
@@ -119,7 +97,8 @@ pub fn solid(
 ) -> Result<SolidOutcome, RunError> {
     problem::solids::supported(case)?;
     let _held = out.map(|out| folder::create(case, input, out)).transpose()?;
-    solids::solve(&solids::Job { case, input, out, from: None }, monitor)
+    let files = out.map(|out| solids::Files { case, out, from: None });
+    study::solids::solve((case, input), files.as_ref().map(|files| files as &dyn SolidsKeeper), monitor)
 }
 
 /// Goes on with a structure alone that was interrupted or killed, from its checkpoint.
@@ -130,7 +109,8 @@ pub fn resume_solid(out: &Path, monitor: &mut dyn Monitor) -> Result<SolidOutcom
     let _held = folder::hold(out)?;
     let saved = solids::Saved::read(out, &case)?;
     folder::reopen(out)?;
-    solids::solve(&solids::Job { case: &case, input: &input, out: Some(out), from: Some(&saved) }, monitor)
+    let files = solids::Files { case: &case, out, from: Some(&saved) };
+    study::solids::solve((&case, &input), Some(&files), monitor)
 }
 
 /// The case in the folder of a run.
@@ -175,7 +155,7 @@ pub fn run_from(case: &Case, places: &Places, from: &Path, monitor: &mut dyn Mon
             hint: "start from a run on the same cloud, or without `--from`",
         });
     }
-    let saved = Saved::read(from)?.trusted(&other)?;
+    let saved = checkpoint::read(from)?.trusted(&other)?;
     let last = saved.stages.get(saved.stage).is_some_and(|s| s.factor == 1.0);
     if !last || saved.lagrangian.is_some() {
         return Err(RunError::OtherRun {
@@ -205,7 +185,7 @@ pub fn set_aside(case: &Case, places: &Places) -> Result<Option<PathBuf>, RunErr
 pub fn resume(out: &Path, monitor: &mut dyn Monitor) -> Result<Outcome, RunError> {
     if let Some(summary) = folder::finished(out) {
         folder::read_case(out)?;
-        folder::check_summary(out)?;
+        folder::check_files(out)?;
         return Ok(Outcome::AlreadyFinished { summary });
     }
     if !case_of(out)?.has_gas() {

@@ -1,6 +1,5 @@
 //! How a run ended.
-use super::record::summary::Summary;
-use super::solids::SolidSummary;
+use crate::study::{SolidSummary, Summary};
 
 /// How a run ended.
 #[derive(Debug)]

@@ -5,17 +5,16 @@
 use std::path::Path;
 use std::time::{Duration, Instant};
 
-use super::cost::Pilot;
-use super::look::Snapshot;
-use super::monitor::{Monitor, Tick};
 use super::session::Session;
-use super::setup::behind_shocks;
 use crate::case::{Case, Initial, Temporal, Time};
 use crate::cloud::CloudSpec;
 use crate::cloud::layout::count;
 use crate::geometry::Surface;
 use crate::problem::numerics;
 use crate::problem::spacing;
+use crate::study::cost::Pilot;
+use crate::study::setup::behind_shocks;
+use crate::study::{Monitor, Snapshot, Tick};
 
 /// Greatest number of particles of a pilot: a fraction of a second in the plane.
 const MOST: f64 = 6000.0;

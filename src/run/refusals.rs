@@ -5,12 +5,13 @@
 //! is told by [`inspect`](super::inspect).
 use std::path::Path;
 
-use super::{flutter, folder, gaf, studies};
+use super::{flutter, folder, gaf};
 use crate::case::{Case, Temporal, read_mode};
 use crate::cloud::layout::count;
 use crate::geometry::dimension;
 use crate::motion::faulty_tables;
 use crate::problem::{Problem, ProblemIn, RunError, files, solids, spec, surface};
+use crate::study::studies;
 
 /// All that the commands refuse of a case whose file names refer to the folder `input`; empty where they can begin.
 pub fn refusals(case: &Case, input: &Path) -> Vec<RunError> {

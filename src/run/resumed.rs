@@ -1,11 +1,11 @@
 //! Going on with a run from its checkpoint.
 use std::path::Path;
 
-use super::flow::Origin;
-use super::folder;
-use super::record::saved::{Saved, equations_of};
 use super::session::Session;
+use super::{checkpoint, folder};
 use crate::problem::RunError;
+use crate::study::flow::Origin;
+use crate::study::record::saved::equations_of;
 
 /// A session that goes on with the run in `out` from its checkpoint, to the same bits as if it had not been stopped.
 pub fn continued(out: &Path) -> Result<Session, RunError> {
@@ -13,7 +13,7 @@ pub fn continued(out: &Path) -> Result<Session, RunError> {
     folder::check_input(&case, &input, out)?;
     folder::check_begun(out)?;
     let held = folder::hold(out)?;
-    let saved = Saved::read(out)?.trusted(&case)?;
+    let saved = checkpoint::read(out)?.trusted(&case)?;
     if saved.equations.is_some_and(|known| known != equations_of(&case)) {
         return Err(RunError::OtherRun {
             what: format!("`{}/case.toml` has other equations than those that the run began with", out.display()),

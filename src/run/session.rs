@@ -3,17 +3,15 @@
 //! A session opens no file but those that the case names, unless it keeps its run in a folder.
 use std::path::{Path, PathBuf};
 
-use super::flow::{self, Bars, Origin, Way};
 use super::folder::{self, Hold};
-use super::look::{Snapshot, WallSnapshot};
-use super::monitor::Monitor;
+use super::keeper::FolderKeeper;
 use super::outcome::Outcome;
-use super::record::IterationHistory;
-use super::record::summary::Summary;
-use super::solution::Solution;
 use crate::case::Case;
 use crate::observe::loads::Coefficients;
 use crate::problem::{Problem, RunError};
+use crate::study::flow::{self, Bars, Origin, Way};
+use crate::study::keeper::Keeper;
+use crate::study::{IterationHistory, Monitor, Snapshot, Solution, Summary, WallSnapshot};
 use crate::verify::{Loops, wall::Wall};
 
 /// A case that is solved in memory.
@@ -82,7 +80,8 @@ impl Session {
         monitor: &mut dyn Monitor,
     ) -> Result<Outcome, RunError> {
         let origin = std::mem::replace(&mut self.origin, Origin::Case);
-        let way = Way { out: self.out.clone(), ..Way::of(origin) };
+        let keeper = self.out.as_deref().map(|out| Box::new(FolderKeeper::new(out)) as Box<dyn Keeper>);
+        let way = Way { keeper, ..Way::of(origin) };
         let ended = match flow::solve(&self.problem, way, monitor)? {
             Ok(mut flow) => flow.conclude(bars)?,
             Err(iteration) => Err(iteration),

@@ -9,9 +9,9 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use super::measure::{self, Measured, Value};
-use super::monitor::Monitor;
 use crate::case::Case;
 use crate::observe::loads::Coefficients;
+use crate::study::Monitor;
 use crate::verify::calibration::{KnownLoad, holding, median_ratio};
 use crate::verify::{Claim, ClaimRow, Metric, Sample, Table, metrics};
 use folder::{FILES, respaced, unreadable};

@@ -83,8 +83,8 @@ CASES = {
 # what tells of the machine and of time, not of the flow
 CLOCKS = {"seconds", "cpu_seconds", "wall_seconds", "peak_bytes", "run", "phases", "cpu_ms_per_particle", "bytes_per_particle",
           "preconditioner_seconds"}
-# the folder stands in the state of ParaView, and what a run took in the checksum of its summary
-UNCOMPARED = {"report.html", "origin.txt", "checkpoint.alula", "log.txt", "finished.txt", "paraview-state.py"}
+# the folder stands in the state of ParaView, and what a run took in the checksums of its files
+UNCOMPARED = {"report.html", "origin.txt", "checkpoint.alula", "log.txt", "finished.txt", "checksums.txt", "paraview-state.py"}
 
 
 def without_clocks(value):

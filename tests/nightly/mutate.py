@@ -6,8 +6,8 @@
 Case files (flow, solids, flutter, three dimensions), STL, OBJ and airfoil files, tables, mode shapes, forces of flutter, checkpoints
 and whole folders of stopped runs are changed at random: bytes, numbers, lines, keys, files. Every input is accepted before it is
 changed, or the script ends: what is refused at its first line tests nothing behind it. The checksums of checkpoints are computed
-anew, so that the numbers behind them are reached; `forgery` changes a number in the record of a stopped run, and leaves it well
-formed. Each input is looked at by one thread within 2 GiB of address space and 20 s of processor time. A panic (exit code 101), an
+anew, so that the numbers behind them are reached; `forgery` changes a number in any file that a stopped or finished run keeps, with a
+checksum of its own that is good, old or gone: it is refused by the name of the file, or has no effect. Each input is looked at by one thread within 2 GiB of address space and 20 s of processor time. A panic (exit code 101), an
 abort (134 or a signal) or one that does not end is a failure, and so is an exit code of 0 with numbers that are not finite or,
 after a forgery, with other results than those of the run that nobody touched. Its files are kept in the folder that the script
 names, and the exit code is 1.
@@ -53,6 +53,7 @@ SOLID_SPACE = BEAM.replace("[1.0, 0.2]", "[1.0, 0.25, 0.25]").replace("translate
     '["x", "y"]', '["x", "y", "z"]').replace('history = "sin(100 * t)"\n', "") + "[time.modes]\nnumber = 2\n"
 PANEL = kill.PANEL + "until = 4e-4\n" + LOOKED_AT
 POLAR = SECTION.replace('"2 deg"', '"0:4:1 deg"').replace("iterations = 2", "orders = 3")
+GAF = STREAM.replace(' = "2 deg"', " = 0") + '[[body]]\nnaca = "0012"\n' + SMALL.replace("iterations = 2", "orders = 2") + "[gaf]\nreduced_frequencies = [0.1, 0.3]\n"
 FLUTTER = STREAM.replace(' = "2 deg"', " = 0") + kill.FLUTTER + "[output]\nreport = false\n"
 SPHERE = kill.SPHERE + SMALL.replace("0.1\n", "0.4\nlayers = 3\n").replace("3.0", "2.0")
 STARTS = {"steady": SECTION, "march": MARCH, "travel": TRAVEL, "balance": BALANCE, "space": SPHERE, "polar": POLAR, "flutter": FLUTTER,
@@ -312,50 +313,52 @@ def change_folder(run, others, rng):
     return f"{file.name} {what}"
 
 
-def numbers_in(value, path=()):
-    """Where there are numbers in a tree."""
-    if isinstance(value, bool):
-        return []
-    if isinstance(value, (int, float)):
-        return [path]
-    items = value.items() if isinstance(value, dict) else enumerate(value) if isinstance(value, list) else []
-    return [found for key, inner in items for found in numbers_in(inner, (*path, key))]
+def records(run):
+    """Files of numbers that a run keeps, and that nobody is to change."""
+    found = [f for f in run.iterdir() if f.suffix in (".csv", ".json", ".alula") or f.name == "cloud.toml"]
+    return sorted(f for f in found if f.suffix == ".alula" or NUMBER.search(f.read_bytes()))
 
 
-def forged(value, path, rng):
-    """The tree with another number at one place."""
-    if not path:
-        return rng.choice([value * 1.5, value + 1, -value if value else 3, 0 if value else 1e6])
-    inner = forged(value[path[0]], path[1:], rng)
-    if isinstance(value, dict):
-        return {**value, path[0]: inner}
-    return [*value[:path[0]], inner, *value[path[0] + 1:]]
+def another_number(data, rng, pattern=NUMBER):
+    """The bytes with another number at one place."""
+    chosen = rng.choice(list(pattern.finditer(data)))
+    old = float(chosen.group())
+    other = rng.choice([o for o in (b"7.5", b"3", b"0.5", b"1e9", b"-2") if float(o) != old])
+    return data[:chosen.start()] + other + data[chosen.end():]
 
 
-def forge(run, start, rng):
-    """One number of what the run goes on with is another; what it is called."""
-    if start == "polar":
-        file = run / RECORDS[start]
-        header, body = read_checkpoint(file.read_bytes())
-        tree = header["meta"]["polar"]["record"]
-        # loads are in the history as well; other columns are told by nothing else
-        path = rng.choice([p for p in numbers_in(tree) if "loads" in p])
-        header["meta"]["polar"]["record"] = forged(tree, path, rng)
-        file.write_bytes(write_checkpoint(file.read_bytes(), header, body))
-        (run / "checkpoint.alula.previous").unlink(missing_ok=True)
-        return path
-    if start == "flutter":
-        file = run / RECORDS[start]
-        tree = json.loads(file.read_text())
-        path = rng.choice(numbers_in(tree))
-        file.write_text(json.dumps(forged(tree, path, rng)))
-        return path
-    file = run / "history.csv"
-    found = list(NUMBER.finditer(file.read_bytes()))
-    chosen, other = rng.choice(found), rng.choice([b"7.5", b"-3", b"1e9"])
-    data = file.read_bytes()
-    file.write_bytes(data[:chosen.start()] + other + data[chosen.end():])
-    return ("history.csv", chosen.start())
+def forge(run, rng, file=None):
+    """One number of a file that the run keeps is another; its own checksum is that of the new numbers, that of the old ones, or gone. What was done,
+    and the names of which one must be told."""
+    file = file or rng.choice(records(run))
+    how = rng.choice(["good", "old", "gone"])
+    data, names = file.read_bytes(), [file.name]
+    if file.suffix == ".alula":
+        header, body = read_checkpoint(data)
+        meta = json.dumps(header["meta"]).encode()
+        forged = {**header, "meta": json.loads(another_number(meta, rng, re.compile(rb"(?<=[:\[, ])-?\d+(?:\.\d+)?(?=[,\]}])")))}
+        file.write_bytes(write_checkpoint(data, forged, body) if how == "good" else another_number(data[:24] + json.dumps(forged).encode(), rng) + body)
+        file.with_name(file.name + ".previous").unlink(missing_ok=True)
+    elif file.name == "flutter-kept.json":
+        file.write_bytes(summed(another_number(data, rng), how))
+    else:
+        file.write_bytes(another_number(data, rng))
+    if how == "gone":
+        (run / "checksums.txt").unlink()
+        names.append("checksums.txt")
+    return f"{file.name} ({how} checksum)", names
+
+
+def summed(data, how):
+    """What is kept of a flutter boundary, with the checksum of its numbers or without one."""
+    start = data.index(b'"finished": ') + 12
+    if how == "gone":
+        return re.sub(rb'"crc32": \d+,\s*', b"", data)
+    if how == "old":
+        return data
+    strings = re.split(rb'("(?:[^"\\]|\\.)*")', data[start:data.rindex(b"}")])
+    compact = b"".join(part if k % 2 else re.sub(rb"\s", b"", part) for k, part in enumerate(strings))
+    return re.sub(rb'"crc32": \d+', b'"crc32": %d' % zlib.crc32(compact), data)
 
 
 def limited():
@@ -413,6 +416,12 @@ def prepare(program, home):
         if code not in (0, 1):
             sys.exit(f"error: the run `{name}` does not go on (exit code {code}): {told}")
         whole[name] = results(folder / "run")
+    gaf = home / "whole" / "gaf"
+    gaf.mkdir()
+    (gaf / "case.toml").write_text(GAF)
+    code, told = alula(program, ["gaf", "case.toml", "--out", "run", "--quiet"], gaf)
+    if code not in (0, 1):
+        sys.exit(f"error: the run `gaf` fails (exit code {code}): {told}")
     INPUTS["structure"][0]["forces.json"] = INPUTS["forces"][0]["forces.json"] = (
         home / "whole" / "flutter" / "run" / "flutter.json").read_text()
     for kind, (files, _) in INPUTS.items():
@@ -446,7 +455,9 @@ def wrong_numbers(run, expected=None):
 def one(program, runs, whole, place, rng, kinds):
     """Makes one input in `place`; kind, and how the program ended."""
     kind = rng.choice(kinds)
-    if kind in ("checkpoint", "folder", "forgery"):
+    if kind == "forgery":
+        return forgery(program, runs, whole, place, rng)
+    if kind in ("checkpoint", "folder"):
         start = rng.choice(sorted(set(STARTS) - ({"flutter"} if kind == "checkpoint" else set())))
         shutil.copytree(runs / start, place, dirs_exist_ok=True)
         run = place / "run"
@@ -455,9 +466,9 @@ def one(program, runs, whole, place, rng, kinds):
             file.write_bytes(change_checkpoint(file.read_bytes(), rng))
             (run / "checkpoint.alula.previous").unlink(missing_ok=True)
         else:
-            what = change_folder(run, runs, rng) if kind == "folder" else forge(run, start, rng)
+            what = change_folder(run, runs, rng)
         code, told = alula(program, ["resume", "run", "--quiet"], place)
-        wrong = wrong_numbers(run, whole[start] if kind == "forgery" else None) if code == 0 else None
+        wrong = wrong_numbers(run) if code == 0 else None
         return f"{kind} of {start} {what}", (wrong or code, told)
     files, changed = INPUTS[kind]
     for name, content in files.items():
@@ -470,6 +481,41 @@ def one(program, runs, whole, place, rng, kinds):
     return kind, (wrong or code, told)
 
 
+def forgery(program, runs, whole, place, rng, start=None, file=None):
+    """A number of a stopped or finished run is another; whether it is refused by the name of its file, or not believed."""
+    start = start or rng.choice(sorted(STARTS) + [f"whole/{name}" for name in sorted(STARTS) + ["gaf"]])
+    shutil.copytree(runs / start, place, dirs_exist_ok=True)
+    run = place / "run"
+    what, names = forge(run, rng, file and run / file)
+    code, told = alula(program, ["resume", "run", "--quiet"], place)
+    wrong = None
+    if code == 0 and start in whole:
+        wrong = wrong_numbers(run, whole[start])
+    elif code == 0:
+        wrong = "believed"
+    elif code in GOOD_CODES and not any(name in told for name in names):
+        wrong = "refused without the name of the file"
+    return f"forgery of {start} {what}", (wrong or code, told)
+
+
+def every_forgery(program, home, whole):
+    """Forges each file of each kind of run, with each kind of checksum; the number of those refused and not survived."""
+    refused = untouched = bad = 0
+    for start in [*sorted(STARTS), *(f"whole/{name}" for name in sorted(STARTS) + ["gaf"])]:
+        for file in records(home / "runs" / start / "run"):
+            for seed in range(6):
+                place = home / "forgery"
+                kind, (code, told) = forgery(program, home / "runs", whole, place, random.Random(f"{file} {seed}"), start, file.name)
+                shutil.rmtree(place)
+                if code in GOOD_CODES:
+                    refused, untouched = refused + (code != 0), untouched + (code == 0)
+                    continue
+                bad += 1
+                print(f"{kind}: {code}: {next((l for l in told.splitlines() if l.strip()), '')[:200]}", flush=True)
+    print(f"{refused + untouched + bad} forgeries of every file: {refused} refused by name, {untouched} without effect, {bad} not survived")
+    return bad
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("alula")
@@ -478,13 +524,14 @@ def main():
     kinds = sorted(INPUTS) + ["checkpoint", "folder", "forgery"]
     parser.add_argument("--only", choices=kinds, help="mutate inputs of this kind alone")
     parser.add_argument("--without", choices=kinds, nargs="*", default=[], help="leave these kinds out")
+    parser.add_argument("--every-forgery", action="store_true", help="forge each file of each kind of run first")
     args = parser.parse_args()
     program = str(pathlib.Path(args.alula).resolve())
     home = pathlib.Path(tempfile.mkdtemp(prefix="alula-mutate-"))
     whole = prepare(program, home / "runs")
     chosen = [args.only] if args.only else sorted(INPUTS) + ["checkpoint"] * 4 + ["folder"] * 4 + ["forgery"] * 2
     chosen = [kind for kind in chosen if kind not in args.without]
-    bad, codes = 0, {}
+    bad, codes = every_forgery(program, home, whole) if args.every_forgery else 0, {}
     for k in range(args.count):
         place = home / f"{args.seed}-{k}"
         place.mkdir()

@@ -9,7 +9,7 @@ use alula::math::multilevel::Cycle;
 use alula::scheme::motion_blending::MotionBlending;
 use alula::scheme::{CloudMotion, DeformingSurface, Fluid, HasGas};
 use alula::structure::{Coordinate, ForceHistory, InertiaLaw, Model, PlanarBody, Spring, Structure};
-use alula::system::{Instant, System};
+use alula::system::{Instant, Name, System};
 use alula::time::control::Control;
 use alula::time::dual::{Dual, Plan};
 use alula::time::harmonic::HarmonicBalance;
@@ -82,7 +82,7 @@ fn a_piston_on_a_spring_radiates_sound() {
         let t = march.advance().unwrap().time;
         inner += march.cost().inner;
         let Standing { frame, work, state: u, .. } = march.standing();
-        let x = u[system.placing().start];
+        let x = u[system.unknowns_of(Name::Structure).start];
         let ratio = zeta / f64::sqrt(1.0 - zeta * zeta);
         let exact = x0 * (-zeta * omega * t).exp() * ((damped * t).cos() + ratio * (damped * t).sin());
         worst = worst.max((x - exact).abs() / x0);
@@ -107,7 +107,7 @@ fn carried_stream() -> (Coupled<2>, Vec<f64>) {
 
 /// Largest difference of the gas from a uniform stream.
 fn strayed(system: &Coupled<2>, u: &[f64], uniform: &[f64]) -> f64 {
-    crate::common::largest(system.gas_range().map(|k| u[k] - uniform[k]))
+    crate::common::largest(system.gas_unknowns().map(|k| u[k] - uniform[k]))
 }
 
 #[test]
@@ -121,19 +121,19 @@ fn a_stream_stays_uniform_on_a_cloud_that_unknown_coordinates_move() {
         assert!(strayed(&system, now, &u) < 1e-12);
     }
     // the structure has gone its way: M q'' + K q = 0
-    let first = system.placing().start;
+    let first = system.unknowns_of(Name::Structure).start;
     assert!((march.standing().state[first] - u[first]).abs() > 0.1);
 
     // at the instances of a period, whatever the coordinates are
     let balance = HarmonicBalance::new(&system, Instances::of_harmonics(2), 3.0, 1.0);
     let mut all = balance.copies(&u);
-    for (k, q) in all[balance.placing()].iter_mut().enumerate() {
+    for (k, q) in all[balance.unknowns_of(Name::Structure)].iter_mut().enumerate() {
         *q += 0.1 * (k as f64).sin();
     }
     let (frame, mut work, mut du) =
-        (balance.frame(&Instant::still(0.0).with(&all[balance.placing()]), &all), balance.work(), all.clone());
+        (balance.frame(&Instant::still(0.0).with(&balance.placing().values(&all)), &all), balance.work(), all.clone());
     balance.rhs(&frame, &all, &mut work, &mut du);
-    let gas = 0..balance.placing().start;
+    let gas = balance.unknowns_of(Name::Gas);
     // fluxes of order one over spacings of a tenth
     assert!(crate::common::largest(du[gas].iter().copied()) < 1e-11);
 }
@@ -169,7 +169,7 @@ fn a_forced_piston_in_a_closed_tube_swings_as_acoustics_have_it() {
     while relax.drop() > 1e-6 && relax.iteration < 60 {
         relax.advance().unwrap();
     }
-    let q: Vec<f64> = relax.u[balance.placing()].chunks_exact(2).map(|pair| pair[0]).collect();
+    let q: Vec<f64> = relax.u[balance.unknowns_of(Name::Structure)].chunks_exact(2).map(|pair| pair[0]).collect();
     let series = Series::of_values(&q).unwrap();
     let exact = force / (spring - mass * omega * omega + AREA * omega / (omega * length).tan());
     println!("{:?} of {exact}, {} iterations, {} linear", series.coefficients(), relax.iteration, relax.linear);

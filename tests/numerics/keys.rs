@@ -15,8 +15,16 @@ use serde_json::Value;
 const TABLE: &str = include_str!("keys.txt");
 
 /// Files that repeat the case or tell when it was run and what it took: of them only the names count.
-const APART: [&str; 7] =
-    ["case.toml", "finished.txt", "origin.txt", "history.csv", "report.html", "csv-metadata.json", "paraview-state.py"];
+const APART: [&str; 8] = [
+    "case.toml",
+    "finished.txt",
+    "checksums.txt",
+    "origin.txt",
+    "history.csv",
+    "report.html",
+    "csv-metadata.json",
+    "paraview-state.py",
+];
 
 /// The same of the keys of JSON files.
 const COST: [&str; 9] = [

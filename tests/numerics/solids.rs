@@ -13,6 +13,7 @@ use alula::scheme::{CloudMotion, HasGas};
 use alula::solid::fill::Lattice;
 use alula::solid::particles::Particles;
 use alula::solid::{Damping, Parts, Plane, Solid, Structure};
+use alula::system::{Name, System};
 use alula::time::explicit::{Method, Plan};
 use alula::time::{Integrator, Memory, Past, Standing};
 
@@ -93,7 +94,7 @@ fn impulse_and_work_pass_to_round_off_and_a_march_goes_on_to_the_same_bits() {
     let begin = system.start_with(&gas);
     let mut march = March::new(&system, system.solids().unwrap(), plan, Past::default(), begin);
     let momentum = |u: &[f64]| {
-        let own = &u[system.solid_range()];
+        let own = &u[system.unknowns_of(Name::Solid)];
         let mass = solids.structure.solid.mass();
         own.chunks_exact(4).zip(mass).map(|(row, m)| m * row[1]).sum::<f64>()
     };

@@ -1,7 +1,7 @@
 //! Steps in time whose equations cannot be solved.
 
 use alula::math::multilevel::Cycle;
-use alula::system::{Fault, Field, Hierarchy, Implicit, Instant, Period, Rate, System};
+use alula::system::{Fault, Field, Hierarchy, Implicit, Instant, Name, Period, Rate, System};
 use alula::time::control::Control;
 use alula::time::dual::{Dual, Plan};
 use alula::time::full::Full;
@@ -21,7 +21,7 @@ impl System for Decay {
     type Work = ();
 
     fn fields(&self) -> &[Field] {
-        const ONE: [Field; 1] = [Field::new("u", 1, 1)];
+        const ONE: [Field; 1] = [Field::new(Name::Other("u"), 1, 1)];
         &ONE
     }
     fn frame(&self, at: &Instant<'_>, _: &[f64]) -> (f64, f64) {

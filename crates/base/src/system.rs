@@ -16,85 +16,16 @@ use std::ops::Range;
 use crate::math::fourier::Instances;
 use crate::math::krylov::Numbers;
 use crate::math::multilevel::Cycle;
+use crate::math::parallel::sweep_slots;
+use crate::math::reduce::norm;
 use crate::math::sparse::Symmetric;
-use crate::math::sweep::{norm, sweep_slots};
+
+pub use field::{Field, Name, Placed, Ranges, placed, rows, rows_of, unknowns, unknowns_of};
+
+mod field;
 
 /// Change of the state in derivatives that are differences, over its size.
 const DIFFERENCE: f64 = 1e-6;
-
-/// Unknowns of one kind: `rows` rows of `block` values each.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Field {
-    /// What they are.
-    pub name: &'static str,
-    /// Rows: particles of a cloud, coordinates of a structure.
-    pub rows: usize,
-    /// Unknowns of a row, those of all instances of a period one after another.
-    pub block: usize,
-    /// How many of the unknowns of a row (and instance), the first ones, measure the size of a residual: the density of a gas
-    /// stands for all.
-    pub measured: usize,
-    /// Instances of a period that a row holds; one unless the solution is periodic in time.
-    pub instances: usize,
-}
-
-impl Field {
-    /// A field whose residual is measured by all its unknowns.
-    pub const fn new(name: &'static str, rows: usize, block: usize) -> Self {
-        Self { name, rows, block, measured: block, instances: 1 }
-    }
-
-    /// The same, measured by the first `measured` unknowns of each row.
-    pub const fn measured_by(self, measured: usize) -> Self {
-        Self { measured, ..self }
-    }
-
-    /// The same at a number of instances of a period.
-    pub const fn at_instances(self, count: usize) -> Self {
-        Self { block: self.block * count, instances: self.instances * count, ..self }
-    }
-
-    /// Unknowns.
-    pub const fn len(&self) -> usize {
-        self.rows * self.block
-    }
-
-    /// True when there are none.
-    pub const fn is_empty(&self) -> bool {
-        self.len() == 0
-    }
-}
-
-/// A field with the place of its unknowns and rows among those of all fields.
-#[derive(Clone, Debug)]
-pub struct Placed {
-    /// The field.
-    pub field: Field,
-    /// Its unknowns in the state.
-    pub unknowns: Range<usize>,
-    /// Its rows among all rows.
-    pub rows: Range<usize>,
-}
-
-/// The fields one after another, as the state holds them.
-pub fn placed(fields: &[Field]) -> impl Iterator<Item = Placed> + '_ {
-    let (mut unknown, mut row) = (0, 0);
-    fields.iter().map(move |field| {
-        let placed = Placed { field: *field, unknowns: unknown..unknown + field.len(), rows: row..row + field.rows };
-        (unknown, row) = (placed.unknowns.end, placed.rows.end);
-        placed
-    })
-}
-
-/// Unknowns of all fields.
-pub fn unknowns(fields: &[Field]) -> usize {
-    fields.iter().map(Field::len).sum()
-}
-
-/// Rows of all fields.
-pub fn rows(fields: &[Field]) -> usize {
-    fields.iter().map(|f| f.rows).sum()
-}
 
 /// One term c f(t) of a difference formula for ∂f/∂t.
 #[derive(Clone, Copy, Debug)]
@@ -195,15 +126,19 @@ pub trait System: Sync {
     fn is_empty(&self) -> bool {
         self.len() == 0
     }
+    /// The unknowns of a field in the state; empty where the system has none of that name.
+    fn unknowns_of(&self, name: Name) -> Range<usize> {
+        unknowns_of(self.fields(), name)
+    }
+    /// The rows of a field among all rows; empty where the system has none of that name.
+    fn rows_of(&self, name: Name) -> Range<usize> {
+        rows_of(self.fields(), name)
+    }
     /// The unknowns that frames depend on: coordinates of bodies. Whole fields; empty where all motion is prescribed.
-    fn placing(&self) -> Range<usize> {
-        0..0
+    fn placing(&self) -> &Ranges {
+        Ranges::NONE
     }
-    /// The unknowns that keep what happened before, and change at the ends of steps alone: what materials remember. A whole field.
-    fn remembered(&self) -> Range<usize> {
-        0..0
-    }
-    /// Has the unknowns that remember take in the step that has led to the state `u`, whose other unknowns are solved.
+    /// Has the unknowns that [remember](Name::History) take in the step that has led to the state `u`, whose other unknowns are solved.
     fn settle(&self, _frame: &Self::Frame, _work: &mut Self::Work, _u: &mut [f64]) {}
     /// Fresh storage.
     fn work(&self) -> Self::Work;

@@ -8,7 +8,7 @@ use super::spline_modes::spline_modes;
 use crate::case::{Case, ModeTable, Steady, Structure, StructureMode, StructureModel, Temporal};
 use crate::geometry::dimension;
 use crate::math::Vector;
-use crate::solid::modes::{Mode, Wanted, modes};
+use crate::solid::modes::{Mode, ModeRequest, modes};
 
 /// Modes that move unless the case says otherwise.
 const USUAL: u32 = 4;
@@ -60,7 +60,7 @@ fn found(alone: &Case, input: &Path, count: usize) -> Result<Vec<StructureMode>,
     let structure = &built.structure;
     remembers(alone, &built)?;
     let still = structure.start(|_| [0.0; 2]);
-    let wanted = Wanted { count, above: 0.0 };
+    let wanted = ModeRequest { count, above: 0.0 };
     let all = modes(structure, &still, &wanted)
         .map_err(|e| RunError::Solid { what: e.to_string(), hint: "see the guide `solids`".into() })?;
     let points = points(&built);

@@ -2,18 +2,19 @@
 //!
 //! The Mach number is shown in the plane of symmetry, or in the middle of the bodies where there is none; the axial vorticity and the
 //! flow across the stream in a plane behind bodies that lift. Lines there follow v and w less those of the free stream.
-use super::super::look::{CrossPlane, side_of_symmetry};
-use super::raster::{MARGIN, Plane, sampled, together};
+use super::raster::{MARGIN, Plane, sampled};
 use super::target::Scene;
 use crate::geometry::Surface;
+use crate::math::parallel::sweep_each_chunk;
 use crate::math::slice::slice;
-use crate::math::sweep::sweep_each_chunk;
 use crate::math::{Bounds, Vector};
 use crate::physics::Primitive;
 use crate::problem::RunError;
 use crate::report::{Colormap, PictureStyle, Raster, raster_png, write_file, write_stations, write_surface_views};
 use crate::scheme::probe::{Near, Probe};
 use crate::scheme::start::free_stream;
+use crate::study::keeper::together;
+use crate::study::look::{CrossPlane, side_of_symmetry};
 
 /// Pixels along the longer side: particles in space are farther apart than in the plane, and each pixel asks more of them.
 pub(super) const PIXELS: usize = 480;

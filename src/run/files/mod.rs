@@ -1,5 +1,6 @@
 //! What a run leaves in its folder: tables, fields, pictures.
 mod cuts;
+mod period;
 mod pictures;
 mod raster;
 mod solids;
@@ -10,10 +11,6 @@ mod target;
 use std::path::{Path, PathBuf};
 
 use super::about;
-use super::found::Found;
-use super::look::{GasView, Held, Hull, Mesh, Rim, SHADE, Snapshot, WallSnapshot, field, planes};
-use super::record::summary::Summary;
-use super::record::{Log, passed};
 use crate::case::Case;
 use crate::cloud::{Cloud, Diagnosis};
 use crate::coupling::SolidSnapshot;
@@ -26,12 +23,18 @@ use crate::problem::RunError;
 use crate::problem::files;
 use crate::report;
 use crate::scheme::Work;
+use crate::study::found::Found;
+use crate::study::keeper::{FILM, FILM_FIELDS};
+use crate::study::look::{GasView, Held, Hull, Mesh, Rim, SHADE, Snapshot, WallSnapshot, field, planes};
+use crate::study::record::summary::Summary;
+use crate::study::record::trace::Trace;
+use crate::study::record::{Log, passed};
 
+pub(crate) use period::write_period;
 pub(crate) use pictures::{pixels, write_cloud};
-pub(crate) use raster::together;
 pub(crate) use solids::{draw_solid, write_solid};
 pub(crate) use state::write_state_script;
-pub(crate) use target::{FILM, FILM_FIELDS, Scene, Target};
+pub(crate) use target::{Scene, Target};
 
 /// Columns of the fields of a film.
 const FILMED: [&str; 4] = ["density", "velocity", "pressure", "vorticity"];
@@ -48,15 +51,16 @@ pub(crate) fn write_all<const D: usize>(
     let files = Files { found, walls, out };
     files.write_tables(&log.record.cycles, summary)?;
     if let Some(period) = log.case_period() {
-        log.record.trace.write(out, period)?;
+        write_trace(&log.record.trace, out, period)?;
     }
     files.write_fields(all, log.record.time)?;
     write_state_script(out)?;
     if let Some(solid) = solid {
         let time = found.case.flow.units().case_time(found.view.time());
-        write_solid((out, "solid"), &about::solid(found.case, Some(time)), solid)?;
+        let about = about::solid(found.case, Some(time));
+        write_solid((out, "solid"), &about, solid)?;
         if found.case.output.report {
-            draw_solid(out, solid)?;
+            draw_solid((out, &about), solid)?;
         }
     }
     if found.case.output.report {
@@ -74,6 +78,14 @@ pub(crate) fn write_all<const D: usize>(
         write_json(&path, summary)?;
     }
     Ok(())
+}
+
+/// Writes `harmonics.json` and `loops.csv` from the last period; nothing while there is none.
+fn write_trace(trace: &Trace, out: &Path, period: f64) -> Result<(), RunError> {
+    let Some((harmonics, loops)) = trace.tables(period) else { return Ok(()) };
+    write_json(&out.join("harmonics.json"), &harmonics)?;
+    let rows = loops.into_iter().map(|row| row.map(Entry::from).to_vec());
+    Ok(write_csv(&out.join("loops.csv"), &["phase", "angle_deg", "shift", "cl", "cd", "cm"], rows)?)
 }
 
 /// What was found on its way into a folder.

@@ -1,8 +1,7 @@
 //! Pictures of a run, drawn through the solver's own fit.
-use super::super::look::pressure_coefficient;
 use super::cuts;
-use super::raster::{MARGIN, Plane, sampled, together};
-use super::target::{FILM, Scene};
+use super::raster::{MARGIN, Plane, sampled};
+use super::target::Scene;
 use crate::geometry::Surface;
 use crate::math::{Bounds, Vector};
 use crate::physics::Primitive;
@@ -11,6 +10,8 @@ use crate::report::{
     Colormap, Dots, PictureStyle, Raster, Scatter, raster_png, scatter_png, write_file, write_pressure,
 };
 use crate::scheme::start::free_stream;
+use crate::study::keeper::{FILM, together};
+use crate::study::look::pressure_coefficient;
 
 /// Pixels along the longer side of a flow picture.
 const PIXELS: usize = 900;

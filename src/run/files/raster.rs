@@ -1,9 +1,8 @@
 //! The flow on a grid of pixels in a plane, by the solver's own fit.
 use super::target::Scene;
-use crate::math::sweep::{sweep_each, sweep_each_chunk};
+use crate::math::parallel::sweep_each_chunk;
 use crate::math::{Bounds, Vector};
 use crate::physics::Primitive;
-use crate::problem::RunError;
 use crate::scheme::probe::{Near, Probe};
 
 /// Pixels from one that is computed by the fit to the next, at most.
@@ -123,11 +122,4 @@ impl<const D: usize> Grid<'_, D> {
             f64::midpoint,
         ))
     }
-}
-
-/// Does `n` things side by side; the first error in their order.
-pub(crate) fn together(n: usize, task: impl Fn(usize) -> Result<(), RunError> + Sync) -> Result<(), RunError> {
-    let mut done: Vec<Result<(), RunError>> = (0..n).map(|_| Ok(())).collect();
-    sweep_each(&mut done, task);
-    done.into_iter().collect()
 }

@@ -17,6 +17,9 @@ pub(crate) fn write_solid<const D: usize>(
 }
 
 /// Pictures of the bodies: displacement, stress and, where they move, each component of the velocity.
-pub(crate) fn draw_solid<const D: usize>(out: &Path, at: &SolidSnapshot<'_, D>) -> Result<(), RunError> {
-    draw(out, at.solid, &at.state())
+pub(crate) fn draw_solid<const D: usize>(
+    (out, about): (&Path, &About),
+    at: &SolidSnapshot<'_, D>,
+) -> Result<(), RunError> {
+    draw((out, about.scale), at.solid, &at.state())
 }

@@ -1,12 +1,12 @@
 //! The table and the chart of loads along the span.
 use std::path::Path;
 
-use super::super::found::Found;
 use crate::observe::strips::{Span, Strip, Strips};
 use crate::observe::table::{Entry, write_csv};
 use crate::problem::RunError;
 use crate::report::{Axis, Chart, Marks, Series, write_file};
 use crate::scheme::start::free_stream;
+use crate::study::found::Found;
 
 /// Name of the table.
 pub(crate) const FILE: &str = "strips.csv";

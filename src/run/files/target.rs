@@ -1,15 +1,10 @@
 //! Where files go, and what pictures are drawn from.
 use std::path::Path;
 
-use super::super::look::TipVortex;
 use crate::case::Case;
 use crate::geometry::Surface;
 use crate::scheme::View;
-
-/// Pictures of one period of a motion.
-pub(crate) const FILM: u32 = 6;
-/// Fields of the last period of a march: a picture of every second one.
-pub(crate) const FILM_FIELDS: u32 = 2 * FILM;
+use crate::study::look::TipVortex;
 
 /// Where files of a case go.
 #[derive(Clone, Copy)]

@@ -114,8 +114,8 @@ impl Finished {
 
 #[cfg(test)]
 mod tests {
-    use super::super::marched::tests::cycle;
     use super::*;
+    use crate::study::flutter::marched::tests::cycle;
 
     #[test]
     fn what_is_kept_is_the_same_again_and_of_the_same_case_alone() {

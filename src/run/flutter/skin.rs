@@ -10,9 +10,6 @@ use num_complex::Complex64;
 use serde::Serialize;
 
 use super::super::folder::make_within;
-use super::shapes::amplitudes;
-use crate::coupling::Attached;
-use crate::geometry::Surface;
 use crate::math::Vector;
 use crate::math::rotation::cross;
 use crate::observe::vtk::{About, Column, Facets, write_collection, write_surface};
@@ -20,6 +17,7 @@ use crate::observe::write_atomic;
 use crate::problem::reference::chord;
 use crate::problem::{Problem, ProblemIn, RunError};
 use crate::record::flutter::{FlutterRow, Share, WallMotion};
+use crate::study::flutter::{amplitudes, moves};
 
 /// Largest displacement that is drawn, over the chord.
 const SHOWN: f64 = 0.1;
@@ -234,27 +232,6 @@ impl Moving<'_> {
     }
 }
 
-/// Displacements of all points of the surface per unit of each coordinate of a body.
-pub(super) fn moves<const D: usize>(surface: &Surface<D>, body: &Attached<D>, units: &[f64]) -> Vec<Vec<[f64; 3]>> {
-    let n = body.structure.len();
-    let placement = body.structure.placement(&vec![0.0; n]);
-    let mut all = vec![vec![[0.0; 3]; surface.vertices.len()]; n];
-    let mut done = vec![false; surface.vertices.len()];
-    for element in surface.elements.iter().filter(|e| usize::from(e.body) == body.body) {
-        for i in element.vertices.iter().map(|i| *i as usize) {
-            if std::mem::replace(&mut done[i], true) {
-                continue;
-            }
-            let x = &surface.vertices[i];
-            let bends: Vec<Vector<D>> = body.shapes.iter().map(|shape| shape.at(x)).collect();
-            for (k, tangent) in placement.tangents(x, &bends).enumerate() {
-                all[k][i] = (tangent * units.get(body.first + k).copied().unwrap_or(1.0)).to_3d();
-            }
-        }
-    }
-    all
-}
-
 /// The greatest length of Re(d e^{iφ}) over all phases φ.
 fn greatest(d: &[Complex64; 3]) -> f64 {
     let sum = |f: fn(&Complex64) -> f64| d.iter().map(f).sum::<f64>();
@@ -264,9 +241,9 @@ fn greatest(d: &[Complex64; 3]) -> f64 {
 
 #[cfg(test)]
 mod tests {
-    use super::super::super::about;
-    use super::super::held::problem_of;
     use super::*;
+    use crate::run::about;
+    use crate::study::flutter::problem_of;
 
     const CASE: &str = "[flow]\nmach = 0.5\n[[body]]\nnaca = \"0012\"\n[cloud]\nspacing = 0.1\n[flutter]\n[structure]\nelastic_axis = -0.4\n\
                         mass_ratio = 60\nx_alpha = 0.2\nr_alpha2 = 0.25\nfrequency_ratio = 0.5\nreduced_speed = 2\n";

@@ -1,12 +1,12 @@
 //! A finished run as it is measured, and as it is kept in a file.
 use std::borrow::Cow;
 
-use super::super::look::Snapshot;
 use super::super::session::Session;
 use super::{Measured, Numbers};
 use crate::case::Case;
 use crate::math::Vector;
 use crate::observe::{Array, Checkpoint, Field};
+use crate::study::Snapshot;
 use crate::verify::{Loops, Wall};
 
 /// Columns of a solution that claims are about, with their components.

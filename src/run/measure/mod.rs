@@ -10,8 +10,6 @@ mod structure;
 
 use std::path::Path;
 
-use super::look::Snapshot;
-use super::record::trace::LastPeriod;
 use num_complex::Complex64;
 pub(super) use numbers::Numbers;
 
@@ -21,6 +19,7 @@ use crate::math::{Bounds, Vector};
 use crate::observe::cycles::Cycles;
 use crate::physics::{Gas, Primitive};
 use crate::scheme::start::free_stream;
+use crate::study::{LastPeriod, Snapshot};
 use crate::verify::metrics;
 use crate::verify::wall::{Wall, contains};
 use crate::verify::{Claim, Curve, FieldTruth, Loops, Metric, Table, WallTruth, loops};

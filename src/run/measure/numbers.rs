@@ -1,12 +1,10 @@
 //! The numbers of a finished run that claims are about: what is kept of its summary.
 use serde::{Deserialize, Serialize};
 
-use super::super::look::forces::GeneralisedForce;
-use super::super::record::summary::Summary;
-use super::super::record::trace::LastPeriod;
 use crate::observe::cycles::Cycles;
 use crate::observe::loads::Coefficients;
 use crate::observe::structure::StructureSummary;
+use crate::study::{GeneralisedForce, LastPeriod, Summary};
 
 /// The numbers of a finished run that claims are about, in the units of the case.
 #[derive(Clone, Debug, Serialize, Deserialize)]

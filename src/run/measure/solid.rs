@@ -1,8 +1,8 @@
 //! What is measured of structures alone.
 use serde::{Deserialize, Serialize};
 
-use super::super::solids::{ModeRow, ProbeRow, SolidSummary};
 use super::Value;
+use crate::study::{ModeRow, ProbeRow, SolidSummary};
 use crate::verify::{Claim, Metric};
 
 /// The numbers of a structure alone that claims are about.

@@ -3,13 +3,14 @@ use std::path::Path;
 
 use serde::Serialize;
 
-use super::{balance, trial};
+use super::trial;
 use crate::case::{Case, Temporal};
 use crate::geometry::dimension;
 use crate::problem::RunError;
 use crate::problem::solids::{build, remembers, supported};
 use crate::solid::forces::State;
 use crate::solid::{Plane, Support};
+use crate::study::solids::possible;
 use crate::system::Mechanical;
 
 /// A structure of particles before it is computed, in SI units; in the plane of the thickness of the case, of a whole turn about an axis.
@@ -64,7 +65,7 @@ fn report<const D: usize>(case: &Case, input: &Path) -> Result<SolidReport, RunE
     if case.has_gas() {
         remembers(case, &built)?;
     } else if let Temporal::Harmonics(plan) = &case.time {
-        balance::possible(&built, plan)?;
+        possible(&built, plan)?;
     }
     let structure = &built.structure;
     let (solid, n) = (&structure.solid, structure.solid.len());

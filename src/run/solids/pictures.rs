@@ -1,12 +1,13 @@
 //! Pictures of bodies made of particles: where they are and what stress is in them, on dots in the plane and on the skin in space.
 use std::path::Path;
 
-use super::fields::von_mises;
 use crate::math::{Bounds, Vector};
+use crate::observe::columns::{Scale, unit_of_array};
 use crate::problem::RunError;
 use crate::report::{Colormap, Dots, Scatter, Shell, SurfaceStyle, scatter_png, surface_png, write_file};
 use crate::solid::Solid;
 use crate::solid::forces::State;
+use crate::study::solids::von_mises;
 
 /// Room around the bodies in a picture, in their length.
 const MARGIN: f64 = 0.1;
@@ -18,20 +19,33 @@ const SIGHT: [f64; 3] = [0.8, 1.0, -0.68];
 /// What a picture shows on the particles.
 pub(super) struct Shown {
     pub(super) title: String,
-    pub(super) quantity: &'static str,
+    /// Quantity and unit.
+    pub(super) quantity: String,
     pub(super) values: Vec<f64>,
 }
 
-/// Pictures of bodies as deformed: displacement, stress and, where they move, each component of the velocity.
-pub(in crate::run) fn draw<const D: usize>(out: &Path, solid: &Solid<D>, state: &State<'_, D>) -> Result<(), RunError> {
+/// A quantity with the unit of an array of fields.
+pub(super) fn with_unit(quantity: &str, array: &str, scale: Option<Scale>) -> String {
+    let unit = scale.and_then(|scale| unit_of_array(array, scale)).filter(|unit| *unit != "1");
+    unit.map_or_else(|| quantity.to_owned(), |unit| format!("{quantity}, {unit}"))
+}
+
+/// Pictures of bodies as deformed: displacement, stress and, where they move, each component of the velocity; `scale` tells the units.
+pub(in crate::run) fn draw<const D: usize>(
+    (out, scale): (&Path, Option<Scale>),
+    solid: &Solid<D>,
+    state: &State<'_, D>,
+) -> Result<(), RunError> {
     let shown = |title: &str, quantity, values| Shown { title: title.to_owned(), quantity, values };
-    let stress = shown("Stress in the solid", "von Mises stress", von_mises(solid, state));
+    let mises = with_unit("von Mises stress", "von_mises_stress", scale);
+    let stress = shown("Stress in the solid", mises, von_mises(solid, state));
     picture((out, "solid"), solid, state.displacement, &stress)?;
-    deformation(out, solid, state.displacement)?;
+    deformation((out, scale), solid, state.displacement)?;
     if state.velocity.iter().flatten().any(|v| *v != 0.0) {
         for (a, (axis, name)) in [("x", "u"), ("y", "v"), ("z", "w")].into_iter().enumerate().take(D) {
             let along = state.velocity.iter().map(|v| v[a]).collect();
-            let velocity = shown(&format!("Velocity of the solid along {axis}"), name, along);
+            let name_and_unit = with_unit(name, "velocity", scale);
+            let velocity = shown(&format!("Velocity of the solid along {axis}"), name_and_unit, along);
             picture((out, &format!("solid-{name}")), solid, state.displacement, &velocity)?;
         }
     }
@@ -39,7 +53,11 @@ pub(in crate::run) fn draw<const D: usize>(out: &Path, solid: &Solid<D>, state: 
 }
 
 /// Bodies displaced, by more than they are where that is too little to see: `pictures/solid-deformation.png`.
-fn deformation<const D: usize>(out: &Path, solid: &Solid<D>, displacement: &[[f64; D]]) -> Result<(), RunError> {
+fn deformation<const D: usize>(
+    (out, scale): (&Path, Option<Scale>),
+    solid: &Solid<D>,
+    displacement: &[[f64; D]],
+) -> Result<(), RunError> {
     let values: Vec<f64> = displacement.iter().map(|u| Vector(*u).norm()).collect();
     let (most, size) = (values.iter().copied().fold(0.0, f64::max), extent(&solid.particles.x));
     if most == 0.0 {
@@ -51,7 +69,8 @@ fn deformation<const D: usize>(out: &Path, solid: &Solid<D>, displacement: &[[f6
         true => format!("Deformation, drawn {} times as large", plain(factor)),
         false => "Deformation".to_owned(),
     };
-    picture((out, "solid-deformation"), solid, &moved, &Shown { title, quantity: "displacement", values })
+    let quantity = with_unit("displacement", "displacement", scale);
+    picture((out, "solid-deformation"), solid, &moved, &Shown { title, quantity, values })
 }
 
 fn extent<const D: usize>(x: &[Vector<D>]) -> f64 {
@@ -131,6 +150,16 @@ fn outlines<const D: usize>(solid: &Solid<D>) -> Vec<Vec<Vector<2>>> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn quantities_have_the_units_of_the_case() {
+        let told = |dimensional| {
+            let scale = Some(Scale { dimensional, dimension: 2 });
+            ["displacement", "velocity", "von_mises_stress"].map(|array| with_unit("q", array, scale))
+        };
+        assert_eq!(told(true), ["q, m", "q, m/s", "q, Pa"]);
+        assert_eq!(told(false), ["q", "q", "q"]);
+    }
 
     #[test]
     fn factors_are_round() {

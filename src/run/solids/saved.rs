@@ -7,14 +7,14 @@ use std::path::Path;
 
 use serde_json::{Value, json};
 
-use super::super::record::saved::FILE;
-use super::record::{Row, Work};
 use crate::case::{Case, HarmonicCount, Harmonics, Temporal};
 use crate::math::fourier::Instances;
 use crate::observe::checkpoint::{self, Array, Checkpoint, Field};
 use crate::problem::RunError;
 use crate::problem::solids::Built;
 use crate::solid::forces::Energy;
+use crate::study::record::saved::FILE;
+use crate::study::solids::{Row, Sought, Standing, Work};
 use crate::system::{Mechanical, System, unknowns};
 use crate::time::Past;
 use crate::time::forced::Place;
@@ -25,71 +25,45 @@ const OF_ROW: usize = 10;
 /// The checkpoint of a run of a structure alone.
 pub(in super::super) struct Saved(Checkpoint<'static>);
 
-/// Where a march stands.
-pub(super) struct Standing {
-    /// What the method must remember.
-    pub(super) past: Past,
-    /// State.
-    pub(super) u: Vec<f64>,
-    /// The history so far.
-    pub(super) rows: Vec<Row>,
-    /// Work so far.
-    pub(super) work: Work,
-}
-
-/// Where the search for a periodic motion stands.
-pub(super) struct Sought {
-    /// Its harmonics.
-    pub(super) held: Instances,
-    /// Where the search among these stands.
-    pub(super) place: Place,
-    /// Iterations with fewer harmonics, linear ones, and halvings.
-    pub(super) before: [u32; 3],
-}
-
-impl Standing {
-    /// Writes the checkpoint of a march.
-    pub(super) fn write(
-        past: Past,
-        u: &[f64],
-        (rows, work): (&[Row], &Work),
-        case: &Case,
-        out: &Path,
-    ) -> Result<(), RunError> {
-        let mut flat = Vec::new();
-        for row in rows {
-            let e = &row.energy;
-            flat.extend([f64::from(row.step), row.time, e.kinetic, e.strain, e.stabilisation, e.contact, e.dissipated]);
-            flat.extend([row.work.loads, row.work.supports, row.work.damped]);
-            flat.extend(row.probes.iter().flatten());
-        }
-        let clock = vec![past.time, past.last, past.next, work.loads, work.supports, work.damped];
-        let meta = json!({ "kind": kind(case), "iteration": past.iteration, "halved": past.halved });
-        let fields = [("state", u.to_vec()), ("before", past.before), ("clock", clock), ("history", flat)];
-        write(meta, fields.into(), case, out)
+/// Writes the checkpoint of a march.
+pub(super) fn write_march(
+    past: Past,
+    u: &[f64],
+    (rows, work): (&[Row], &Work),
+    case: &Case,
+    out: &Path,
+) -> Result<(), RunError> {
+    let mut flat = Vec::new();
+    for row in rows {
+        let e = &row.energy;
+        flat.extend([f64::from(row.step), row.time, e.kinetic, e.strain, e.stabilisation, e.contact, e.dissipated]);
+        flat.extend([row.work.loads, row.work.supports, row.work.damped]);
+        flat.extend(row.probes.iter().flatten());
     }
+    let clock = vec![past.time, past.last, past.next, work.loads, work.supports, work.damped];
+    let meta = json!({ "kind": kind(case), "iteration": past.iteration, "halved": past.halved });
+    let fields = [("state", u.to_vec()), ("before", past.before), ("clock", clock), ("history", flat)];
+    write(meta, fields.into(), case, out)
 }
 
-impl Sought {
-    /// Writes the checkpoint of a search for a periodic motion.
-    pub(super) fn write(
-        place: &Place,
-        (held, before): (Instances, [u32; 3]),
-        case: &Case,
-        out: &Path,
-    ) -> Result<(), RunError> {
-        let meta = json!({
-            "kind": kind(case), "harmonics": held.harmonics(), "before": before, "within": place.within,
-            "iterations": place.iterations, "linear": place.linear, "halved": place.halved,
-        });
-        let fields = [
-            ("state", place.u.clone()),
-            ("last_good", place.last_good.clone()),
-            ("start", place.start.clone()),
-            ("parts", vec![place.reached, place.sought, place.first]),
-        ];
-        write(meta, fields.into(), case, out)
-    }
+/// Writes the checkpoint of a search for a periodic motion.
+pub(super) fn write_search(
+    place: &Place,
+    (held, before): (Instances, [u32; 3]),
+    case: &Case,
+    out: &Path,
+) -> Result<(), RunError> {
+    let meta = json!({
+        "kind": kind(case), "harmonics": held.harmonics(), "before": before, "within": place.within,
+        "iterations": place.iterations, "linear": place.linear, "halved": place.halved,
+    });
+    let fields = [
+        ("state", place.u.clone()),
+        ("last_good", place.last_good.clone()),
+        ("start", place.start.clone()),
+        ("parts", vec![place.reached, place.sought, place.first]),
+    ];
+    write(meta, fields.into(), case, out)
 }
 
 impl Saved {

@@ -14,15 +14,17 @@ use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
 
 use super::super::measure::{Measured, Numbers, boundary, forces, solid};
-use super::super::monitor::{Monitor, Quiet};
 use super::super::outcome::Outcome;
 use super::super::session::Session;
-use super::super::{flutter, gaf, solids};
+use super::super::{flutter, gaf};
 use crate::case::Case;
 use crate::observe::table::write_json;
 use crate::observe::usage::cpu_seconds;
 use crate::observe::{Checkpoint, checkpoint};
 use crate::problem::RunError;
+use crate::study::Monitor;
+use crate::study::monitor::Quiet;
+use crate::study::solids;
 
 /// Name of the table of times.
 const TIMES: &str = "times.json";
@@ -344,13 +346,10 @@ impl Job<'_> {
         let quiet = &mut Quiet { monitor };
         match self.kind {
             Kind::Flow => self.flow(quiet),
-            Kind::Structure => {
-                let job = solids::Job { case: self.case, input: self.folder, out: None, from: None };
-                match solids::solve(&job, quiet)? {
-                    solids::Ended::Finished(found) => Ok(Found::Structure((&found.summary).into())),
-                    solids::Ended::Interrupted(_) => Err(Failure::Stopped),
-                }
-            }
+            Kind::Structure => match solids::solve((self.case, self.folder), None, quiet)? {
+                solids::Ended::Finished(found) => Ok(Found::Structure((&found.summary).into())),
+                solids::Ended::Interrupted(_) => Err(Failure::Stopped),
+            },
             Kind::Flutter => {
                 let found = flutter::in_memory(self.case, self.folder, None, quiet)?;
                 found.map(|boundary| Found::Flutter((&boundary).into())).ok_or(Failure::Stopped)

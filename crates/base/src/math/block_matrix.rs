@@ -11,8 +11,8 @@ use std::sync::Arc;
 use multiversion::multiversion;
 
 use super::blocks::{MOST_ENTRIES, array, invert_block, store, with_block};
+use super::parallel::{copy, fill, parts, sweep_parts, sweep_rows, sweep_two_parts};
 use super::rounded::{LANES, UNIT, add_block, leading, load, load_lanes, multiply, round_block, subtract, unit_of};
-use super::sweep::{copy, fill, parts, sweep_parts, sweep_rows, sweep_two_parts};
 
 /// Fewest and most rows in one part of a coarse matrix.
 const PART: [usize; 2] = [64, 1024];

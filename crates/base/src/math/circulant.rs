@@ -10,8 +10,8 @@ use multiversion::multiversion;
 
 use super::block_matrix::BlockMatrix;
 use super::blocks::{store, with_block};
+use super::parallel::{copy, fill, sweep_parts, sweep_two_parts};
 use super::rounded::{LANES, Lanes, leading, load, multiply, subtract_wide, widen_block};
-use super::sweep::{copy, fill, sweep_parts, sweep_two_parts};
 
 /// Greatest number of harmonics.
 pub const MOST_HARMONICS: usize = 16;

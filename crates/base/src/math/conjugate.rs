@@ -1,6 +1,7 @@
 //! Conjugate gradients with a preconditioner that need not be linear: each direction is made conjugate to the one before it by
 //! what it is, not by what exact arithmetic would make of it (Notay, *Flexible conjugate gradients*, SIAM J. Sci. Comput. 22, 2000).
-use super::sweep::{sum, sweep_slots};
+use super::parallel::sweep_slots;
+use super::reduce::sum;
 use super::types::Vector;
 
 /// What a row of a vector holds.
@@ -71,7 +72,7 @@ pub fn conjugate_gradients<R: Row>(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::math::sweep::sweep;
+    use crate::math::parallel::sweep;
 
     #[test]
     fn strings_under_load_are_found_in_as_many_steps_as_they_have_knots() {

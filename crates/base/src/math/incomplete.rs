@@ -13,8 +13,8 @@ use multiversion::multiversion;
 
 use super::block_matrix::BlockMatrix;
 use super::blocks::{array, invert, store, with_block};
+use super::parallel::{sweep, sweep_parts};
 use super::rounded::{LANES, Lanes, leading, load, multiply, subtract, widen_block};
-use super::sweep::{sweep, sweep_parts};
 
 /// Inverse pivots of a matrix, and the storage of a solution.
 #[derive(Clone, Debug, Default)]
@@ -184,7 +184,7 @@ mod tests {
             index.extend([i.wrapping_sub(1), i + 1].iter().filter(|j| **j < n).map(|j| *j as u32));
             first.push(index.len() as u32);
         }
-        let mut matrix = BlockMatrix::new(2, &super::super::sweep::parts(n, n), &first.into(), &index.into());
+        let mut matrix = BlockMatrix::new(2, &super::super::parallel::parts(n, n), &first.into(), &index.into());
         matrix.assemble(|_, rows| {
             for i in 0..n {
                 rows.add(i, i, |r, c| if r == c { 4.0 } else { 0.25 });

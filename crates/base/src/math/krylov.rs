@@ -7,8 +7,9 @@
 //! Perform. Comput. Appl. 37, 2023).
 use std::ops::Range;
 
+use super::parallel::{fill, sweep, sweep_chunks};
+use super::reduce::{abreast, norm, sum_each};
 use super::rounded::{of_upper_half, upper_half};
-use super::sweep::{abreast, fill, norm, sum_each, sweep, sweep_chunks};
 
 /// Unknowns beyond which basis vectors are kept to two or three digits.
 const LARGE: usize = 1 << 19;

@@ -3,7 +3,7 @@
 //! A block of vectors, its image, the image of that and so on are made orthogonal to all before them (block Lanczos with full
 //! reorthogonalisation: Golub and Underwood 1977), and the operator is diagonalised in the space that they span. A block as large as
 //! an eigenvalue is often finds all vectors of it: a free body has six at zero. With the inverse as operator these are the smallest ones.
-use super::sweep::dot;
+use super::reduce::dot;
 use super::symmetric;
 
 /// Vectors in a block.

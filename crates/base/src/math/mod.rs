@@ -1,4 +1,4 @@
-//! Arithmetic that knows no physics: small vectors, least squares, sparse blocks and full matrices, Krylov methods, the parallel loop.
+//! Arithmetic that knows no physics: small vectors, least squares, sparse blocks and full matrices, Krylov methods, parallel loops and sums over rows.
 pub mod block_matrix;
 pub mod blocks;
 pub mod circulant;
@@ -18,15 +18,17 @@ pub mod lanczos;
 pub mod least_squares;
 pub mod moving_fit;
 pub mod multilevel;
+pub mod parallel;
 pub mod pencil;
 pub mod rational;
+pub mod reduce;
 pub mod rotation;
 pub mod rounded;
 pub mod singular;
 pub mod slice;
 pub mod sparse;
 pub mod square;
-pub mod sweep;
+
 pub mod symmetric;
 pub mod tetrahedra;
 pub mod triangulation;

@@ -9,7 +9,7 @@ use super::block_matrix::{BlockMatrix, Sweeps};
 use super::circulant::{HarmonicSweeps, MOST_HARMONICS};
 use super::fourier::Instances;
 use super::groups::Groups;
-use super::sweep::{sweep, sweep_rows};
+use super::parallel::{sweep, sweep_rows};
 
 /// Rows at which coarsening stops.
 const COARSEST: usize = 60;

@@ -2,7 +2,7 @@
 //!
 //! Reflections leave entries beside the diagonal alone, and QR steps clear these. A x = λ B x with B = G Gᵀ has the eigenvalues of
 //! G⁻¹ A G⁻ᵀ (Golub and Van Loan, 4th edition, sections 4.2, 8.3 and 8.7).
-use super::sweep::abreast;
+use super::reduce::abreast;
 
 /// Steps for one eigenvalue after which there is none: two are usual.
 const STEPS: usize = 60;

@@ -7,8 +7,9 @@ use super::formula::Formula;
 use super::relax::{Relax, TimeTerm};
 use super::{CROWDED, Cost, Integrator, Mark, Memory, Past, Standing, Step, TimeError};
 use crate::math::multilevel::Cycle;
-use crate::math::sweep::{sum, sweep};
-use crate::system::{Implicit, Instant, Reach};
+use crate::math::parallel::sweep;
+use crate::math::reduce::sum;
+use crate::system::{Implicit, Instant, Name, Reach};
 
 /// Greatest ratio of successive steps.
 const GROWTH: f64 = 1.5;
@@ -82,7 +83,7 @@ impl<'a, S: Implicit> Dual<'a, S> {
             all.set_frame_after_step();
             all.make_again();
         } else {
-            all.relax.set_frame(&Instant::still(all.past.time).with(&all.start[system.placing()]));
+            all.relax.set_frame(&Instant::still(all.past.time).with(&system.placing().values(&all.start)));
         }
         all
     }
@@ -206,10 +207,10 @@ impl<S: Implicit> Dual<'_, S> {
     fn set_frame_after_step(&mut self) {
         let placing = self.system.placing();
         let (time, last) = (self.past.time, self.past.last.max(f64::MIN_POSITIVE));
-        let before = self.past.before.get(placing.clone()).unwrap_or_default();
-        let older = self.past.older.get(placing.clone()).unwrap_or(before);
-        let formula = self.formula_at(time, last, last).with_past(&[before, older]);
-        let now = self.relax.u[placing].to_vec();
+        let before = placing.values(&self.past.before);
+        let older = if self.past.older.is_empty() { before.clone() } else { placing.values(&self.past.older) };
+        let formula = self.formula_at(time, last, last).with_past(&[&before, &older]);
+        let now = placing.values(&self.relax.u).into_owned();
         formula.at(&now, |at| self.relax.set_frame(at));
     }
 
@@ -252,8 +253,8 @@ impl<S: Implicit> Dual<'_, S> {
     fn step(&mut self, dt: f64) -> Result<f64, TimeError> {
         let end = self.past.time + dt;
         let (start, before, placing) = (&self.start, &self.past.before, self.system.placing());
-        let past = [&start[placing.clone()], before.get(placing).unwrap_or_default()];
-        let formula = self.formula_at(end, self.past.last, dt).with_past(&past);
+        let past = [placing.values(start), placing.values(before)];
+        let formula = self.formula_at(end, self.past.last, dt).with_past(&[&past[0], &past[1]]);
         let mut rest = self.relax.spare_rest();
         let [last, older] = [formula.coefficient(1), formula.coefficient(2)];
         let old = |k: usize| if older != 0.0 { older * before[k] } else { 0.0 };
@@ -286,7 +287,7 @@ impl<S: Implicit> Dual<'_, S> {
 
     /// Within a step what is remembered stays as it was at its start: ∂/∂t of it is nothing.
     fn keep_what_is_remembered(&mut self, formula: &Formula, rest: &mut [f64]) {
-        let own = self.system.remembered();
+        let own = self.system.unknowns_of(Name::History);
         let start = &self.start[own.clone()];
         self.relax.u[own.clone()].copy_from_slice(start);
         if let Some(line) = self.line.get_mut(own.clone()) {
@@ -364,6 +365,6 @@ fn make_ahead<S: Implicit>(
     let (placing, rate) = (system.placing(), formula.coefficient(0));
     match placing.is_empty() {
         true => formula.at(&[], |at| relax.prepare_at(at, state, rate)),
-        false => relax.prepare_at(&Instant::within(end, dt, 0.0).with(&state[placing]), state, rate),
+        false => relax.prepare_at(&Instant::within(end, dt, 0.0).with(&placing.values(state)), state, rate),
     }
 }

@@ -1,6 +1,7 @@
 //! Explicit Runge-Kutta methods for marching in time.
 use super::{CROWDED, Cost, Integrator, Mark, Memory, Past, Standing, Step, TimeError};
-use crate::math::sweep::sweep;
+use crate::math::parallel::sweep;
+use crate::math::reduce::maximum;
 use crate::system::{Instant, System, rows};
 
 /// Coefficients in the form u_s = Σ_r α_r u_r + β Δt R(u_{s−1}): here α on the start and on the last stage only.
@@ -70,7 +71,7 @@ impl<'a, S: System> Explicit<'a, S> {
             true => Instant::within(end - step, step, 1.0),
             false => Instant::still(end),
         };
-        let frame = system.frame(&at.with(&u[system.placing()]), &u);
+        let frame = system.frame(&at.with(&system.placing().values(&u)), &u);
         Self {
             system,
             method,
@@ -91,7 +92,7 @@ impl<'a, S: System> Explicit<'a, S> {
     /// The longest stable step, given how fast particles move now.
     fn step_length(&mut self) -> f64 {
         self.system.rates(&self.frame, &self.u, &mut self.work, &mut self.rate);
-        self.cfl / self.rate.iter().fold(0.0f64, |m, r| m.max(*r))
+        self.cfl / maximum(self.rate.len(), |i| self.rate[i])
     }
 
     fn evaluate(&mut self, dt: f64, fraction: f64) {
@@ -102,7 +103,8 @@ impl<'a, S: System> Explicit<'a, S> {
 
     /// Brings the frame to part of the way through the step of length `dt` that begins now.
     fn place(&mut self, dt: f64, fraction: f64) {
-        let at = Instant::within(self.past.time, dt, fraction).with(&self.u[self.system.placing()]);
+        let coordinates = self.system.placing().values(&self.u);
+        let at = Instant::within(self.past.time, dt, fraction).with(&coordinates);
         self.system.place(&at, &mut self.frame);
     }
 
@@ -189,5 +191,5 @@ impl<S: System> Integrator<S> for Explicit<'_, S> {
 
 /// x[k] = f(k, x[k]).
 fn combine(x: &mut [f64], f: impl Fn(usize, f64) -> f64 + Sync) {
-    crate::math::sweep::sweep_rows(x, 1, |k, row| row[0] = f(k, row[0]));
+    crate::math::parallel::sweep_rows(x, 1, |k, row| row[0] = f(k, row[0]));
 }

@@ -7,7 +7,7 @@
 //! preconditioned from the left, so that it measures them too.
 use super::vibration::Vibration;
 use crate::math::krylov::{Gmres, Goal, Numbers, System};
-use crate::math::sweep::{dot, maximum};
+use crate::math::reduce::{dot, maximum};
 use crate::system::Mechanical;
 
 /// When a search ends.

@@ -9,12 +9,11 @@
 //!
 //! *Oversampling* evaluates R at more instances than there are unknowns, on the interpolated state, and keeps the harmonics
 //! up to N of what it finds: products of high harmonics are then not mistaken for low ones.
-use std::ops::Range;
 
 use crate::math::fourier::{Instances, Matrix};
-use crate::math::sweep::sweep_rows;
+use crate::math::parallel::sweep_rows;
 use crate::system::{
-    Fault, Field, Hierarchy, Implicit, Instant, Period, Placed, Preconditioner, RightHandSide, Shift, System, Term,
+    Fault, Field, Hierarchy, Implicit, Instant, Period, Preconditioner, Ranges, RightHandSide, Shift, System, Term,
     placed,
 };
 
@@ -22,7 +21,7 @@ use crate::system::{
 pub struct HarmonicBalance<'a, S: System> {
     system: &'a S,
     fields: Vec<Field>,
-    placing: Range<usize>,
+    placing: Ranges,
     held: Instances,
     seen: Instances,
     omega: f64,
@@ -48,8 +47,7 @@ impl<'a, S: System> HarmonicBalance<'a, S> {
         let seen = Instances::of_harmonics(harmonics);
         let (derivative, count) = (held.derivative(omega), held.count());
         let fields: Vec<Field> = system.fields().iter().map(|f| f.at_instances(count)).collect();
-        let placing = system.placing();
-        let placing = placing.start * count..placing.end * count;
+        let placing = system.placing().at_instances(count);
         let (up, down) = (held.resample(&seen), seen.resample(&held));
         let seen_derivative = seen.derivative(omega);
         Self { system, fields, placing, held, seen, omega, derivative, seen_derivative, up, down }
@@ -175,19 +173,20 @@ impl<'a, S: System> HarmonicBalance<'a, S> {
     pub fn with_instant<T>(&self, u: &[f64], phase: f64, f: impl FnOnce(&Instant<'_>) -> T) -> T {
         let now = self.coordinates(u, &self.held.weights(phase));
         let weights: Vec<f64> = self.seen.derivative_weights(phase).iter().map(|w| w * self.omega).collect();
-        self.instant(&self.coordinates_seen(&u[self.placing.clone()]), (phase, &now), &weights, f)
+        self.instant(&self.coordinates_seen(&self.placing.values(u)), (phase, &now), &weights, f)
     }
 
     /// The coordinates that place frames, Σ_j weights_j q_j.
     fn coordinates(&self, u: &[f64], weights: &[f64]) -> Vec<f64> {
-        self.coordinates_of(&u[self.placing.clone()], weights)
+        self.coordinates_of(&self.placing.values(u), weights)
     }
 
     fn coordinates_of(&self, q: &[f64], weights: &[f64]) -> Vec<f64> {
         let (placing, count) = (self.system.placing(), self.held.count());
-        let mut out = vec![0.0; placing.len()];
-        for at in placed(self.system.fields()).filter(|at| inside(at, &placing)) {
-            let own = at.unknowns.start - placing.start..at.unknowns.end - placing.start;
+        let (mut out, mut first) = (vec![0.0; placing.len()], 0);
+        for at in placed(self.system.fields()).filter(|at| placing.contain(&at.unknowns)) {
+            let own = first..first + at.unknowns.len();
+            first = own.end;
             combine_rows(&q[own.start * count..own.end * count], at.field.block, weights, &mut out[own]);
         }
         out
@@ -228,11 +227,6 @@ impl<'a, S: System> HarmonicBalance<'a, S> {
     }
 }
 
-/// True when a field is one of those that place frames.
-fn inside(at: &Placed, placing: &Range<usize>) -> bool {
-    placing.start <= at.unknowns.start && at.unknowns.end <= placing.end && !at.unknowns.is_empty()
-}
-
 /// Rows of `b` unknowns: Σ_j weights_j of those at all instances.
 fn combine_rows(all: &[f64], b: usize, weights: &[f64], out: &mut [f64]) {
     let count = weights.len();
@@ -257,8 +251,8 @@ impl<S: System> System for HarmonicBalance<'_, S> {
         &self.fields
     }
 
-    fn placing(&self) -> Range<usize> {
-        self.placing.clone()
+    fn placing(&self) -> &Ranges {
+        &self.placing
     }
 
     fn work(&self) -> Self::Work {
@@ -268,7 +262,7 @@ impl<S: System> System for HarmonicBalance<'_, S> {
 
     fn frame(&self, _: &Instant<'_>, u: &[f64]) -> Self::Frame {
         let mut one = vec![0.0; self.system.len()];
-        let seen = self.coordinates_seen(&u[self.placing.clone()]);
+        let seen = self.coordinates_seen(&self.placing.values(u));
         let frame = |(n, phase): (usize, f64)| {
             self.look(u, n, &mut one);
             self.instant(&seen, (phase, &seen[n]), self.seen_derivative.row(n), |at| self.system.frame(at, &one))

@@ -8,7 +8,8 @@
 use super::recycled::Recycled;
 use crate::math::fourier::Instances;
 use crate::math::krylov::{Gmres, Goal, Numbers};
-use crate::math::sweep::{norm, sweep_slots};
+use crate::math::parallel::sweep_slots;
+use crate::math::reduce::norm;
 use crate::system::{Hierarchy, Implicit, Period, Placed, Preconditioner, Reach, RightHandSide, Shift, placed};
 
 /// Change of the state in hasty products, over its size.

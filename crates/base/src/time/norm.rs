@@ -2,7 +2,7 @@
 //!
 //! Each row is measured by the change that its residual would make in one local time; a field by the root mean square over its
 //! rows; several fields together so that each counts by what it was at first: the residual of all of them then falls together.
-use crate::math::sweep::sum;
+use crate::math::reduce::sum;
 use crate::system::{Field, Placed, placed};
 
 /// Least first residual of a field in units of its unknowns: below it a field counts as if it had nothing to do.

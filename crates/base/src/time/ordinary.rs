@@ -2,7 +2,8 @@
 //!
 //! Every integrator takes them as it takes a gas; the linear systems of implicit ones are solved with the full matrix.
 use super::full::Full;
-use crate::system::{Fault, Field, Hierarchy, Implicit, Instant, Period, System};
+use crate::math::reduce::largest_size;
+use crate::system::{Fault, Field, Hierarchy, Implicit, Instant, Name, Period, System};
 
 /// Change of an unknown, in its own unit, that counts as much as a relative change of one thousandth of a density.
 const LARGE: f64 = 1e-3;
@@ -18,7 +19,7 @@ impl<F: Fn(f64, &[f64], &mut [f64]) + Sync> Ordinary<F> {
     /// `n` equations: `f(t, u, du)` writes du/dt. `rate` is the fastest rate at which the unknowns change on their own, which
     /// explicit steps and pseudo time are measured by.
     pub fn new(n: usize, rate: f64, f: F) -> Self {
-        Self { fields: [Field::new("unknowns", 1, n)], rate, f }
+        Self { fields: [Field::new(Name::Other("unknowns"), 1, n)], rate, f }
     }
 }
 
@@ -51,7 +52,7 @@ impl<F: Fn(f64, &[f64], &mut [f64]) + Sync> System for Ordinary<F> {
     }
 
     fn largest_change(&self, _: &[f64], du: &[f64]) -> f64 {
-        du.iter().fold(0.0, |m: f64, d| if d.is_finite() { m.max(LARGE * d.abs()) } else { f64::INFINITY })
+        LARGE * largest_size(du.len(), |k| du[k])
     }
 
     fn check(&self, time: &f64, u: &[f64]) -> Result<(), Fault> {

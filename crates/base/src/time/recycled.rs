@@ -6,7 +6,8 @@
 use std::ops::Range;
 
 use crate::math::dense::Factors;
-use crate::math::sweep::{sum_each, sweep_chunks};
+use crate::math::parallel::sweep_chunks;
+use crate::math::reduce::sum_each;
 
 /// Solutions that are kept at least, and at most.
 const KEPT: [usize; 2] = [8, 24];

@@ -18,7 +18,8 @@ use super::norm::{norm, weigh};
 use super::preconditioning::Preconditioning;
 use super::{Cost, Integrator, Mark, Memory, Standing, Step, TimeError};
 use crate::math::krylov::Gmres;
-use crate::math::sweep::{sweep, sweep_rows};
+use crate::math::parallel::{sweep, sweep_rows};
+use crate::math::reduce::largest;
 use crate::system::{Fault, Hierarchy, Implicit, Instant, Reach, Shift, placed, rows};
 
 /// Drop of the residual below which the flow counts as settled.
@@ -161,7 +162,7 @@ impl<'a, S: Implicit> Relax<'a, S> {
     pub fn new(system: &'a S, control: Control, u: Vec<f64>, origin: &[f64], resume: Option<Resume>) -> Self {
         let n = u.len();
         let mut work = system.work();
-        let frame = system.frame(&Instant::still(0.0).with(&origin[system.placing()]), origin);
+        let frame = system.frame(&Instant::still(0.0).with(&system.placing().values(origin)), origin);
         let mut rate = vec![0.0; rows(system.fields())];
         system.rates(&frame, origin, &mut work, &mut rate);
         let implicit = control.method != Method::RungeKutta;
@@ -208,7 +209,7 @@ impl<'a, S: Implicit> Relax<'a, S> {
         let system = self.system;
         system.rhs(&self.frame, origin, &mut self.work, &mut self.trial_residual);
         if self.moves() {
-            system.place(&Instant::still(0.0).with(&self.u[system.placing()]), &mut self.frame);
+            system.place(&Instant::still(0.0).with(&system.placing().values(&self.u)), &mut self.frame);
         }
         system.rhs_with_boundary(&self.u, &mut self.work, &mut self.frame, &mut self.residual);
         if !goes_on {
@@ -310,7 +311,7 @@ impl<'a, S: Implicit> Relax<'a, S> {
     pub fn begin_step(&mut self, term: TimeTerm) {
         let (system, placing) = (self.system, self.system.placing());
         system.prescribe(term.formula.time(), &mut self.u);
-        term.formula.at(&self.u[placing], |at| system.place(at, &mut self.frame));
+        term.formula.at(&placing.values(&self.u), |at| system.place(at, &mut self.frame));
         system.rhs_with_boundary(&self.u, &mut self.work, &mut self.frame, &mut self.residual);
         system.rates(&self.frame, &self.u, &mut self.work, &mut self.rate);
         let (rate, coefficient) = (&self.rate, term.rate());
@@ -476,12 +477,11 @@ impl<'a, S: Implicit> Relax<'a, S> {
         let (mut worst, mut whose) = ((0, -1.0), String::new());
         for at in placed(self.system.fields()) {
             let (n, r, scale) = (at.field.block, &self.residual[at.unknowns], &self.scale[at.rows.clone()]);
-            for (i, row) in r.chunks_exact(n).enumerate() {
-                let size = row.iter().fold(0.0, |m: f64, r| m.max(r.abs())) * scale[i];
-                if size > worst.1 {
-                    worst = (at.rows.start + i, size);
-                    whose = format!("row {i} of the {}", at.field.name);
-                }
+            let size = |i: usize| r[i * n..(i + 1) * n].iter().map(|r| r.abs() * scale[i]).reduce(f64::max);
+            let found = largest(at.field.rows, |i| size(i).unwrap_or(0.0));
+            if let Some((i, size)) = found.filter(|(_, size)| *size > worst.1) {
+                worst = (at.rows.start + i, size);
+                whose = format!("row {i} of the {}", at.field.name);
             }
         }
         let place = self.system.locate(&self.frame, worst.0);

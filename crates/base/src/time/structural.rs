@@ -7,8 +7,8 @@
 //! where there are too many unknowns for that. Equilibrium is the same without inertia, in steps of the load.
 use super::{Cost, Integrator, Mark, Memory, Past, Standing, Step, TimeError};
 use crate::math::conjugate::{Symmetric as ByProducts, conjugate_gradients};
+use crate::math::reduce::{dot, maximum, sum};
 use crate::math::sparse::Factors;
-use crate::math::sweep::{dot, maximum};
 use crate::math::types::Vector;
 use crate::system::{Fault, Instant, Mechanical, Moment};
 
@@ -75,7 +75,7 @@ impl Solver {
             &mut left,
             if factored { 10 * STALE } else { MOST },
             ByProducts {
-                enough: |r: &[Vector<1>]| r.iter().map(|r| r[0] * r[0]).sum::<f64>().sqrt() <= goal,
+                enough: |r: &[Vector<1>]| sum(r.len(), |k| r[k][0] * r[k][0]).sqrt() <= goal,
                 product: |v: &[Vector<1>], out: &mut [Vector<1>]| {
                     plain.iter_mut().zip(v).for_each(|(p, v)| *p = v[0]);
                     system.stiffness(stiffness, &plain, work, &mut image);

@@ -4,7 +4,7 @@
 //! ripple (Hairer, Lubich and Wanner 2003, doi:10.1017/S0962492902000144). The work of all that is no energy of the structure is
 //! summed up on the way, with the mean of the forces at both ends of a step.
 use super::{Cost, Integrator, Mark, Memory, Past, Standing, Step, TimeError};
-use crate::math::sweep::sweep_rows;
+use crate::math::parallel::sweep_rows;
 use crate::system::{Instant, Mechanical, Moment};
 
 /// How to march.

@@ -10,8 +10,9 @@
 use num_complex::Complex64;
 
 use crate::math::fourier::{Instances, Matrix};
+use crate::math::parallel::sweep;
+use crate::math::reduce::{maximum, sum};
 use crate::math::sparse::ComplexFactors;
-use crate::math::sweep::{maximum, sum, sweep};
 use crate::system::{Damping, Fault, Mechanical, Moment};
 
 /// A periodic motion that is sought.

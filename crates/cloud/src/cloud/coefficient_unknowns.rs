@@ -3,7 +3,7 @@ use super::layers::face_volume;
 use super::operators::Reverse;
 use super::{Cloud, Neighbours};
 use crate::math::Vector;
-use crate::math::sweep::{CHUNK, parts, sweep_parts};
+use crate::math::parallel::{CHUNK, parts, sweep_parts};
 
 /// Relative mobility of the shares β of a wall area.
 const SHARE_FREEDOM: f64 = 0.1;

@@ -40,7 +40,8 @@ use super::operators::{Reverse, WallFace};
 use super::{Cloud, Operators};
 use crate::math::Vector;
 use crate::math::conjugate::{Row as _, Symmetric, conjugate_gradients};
-use crate::math::sweep::{sum, sweep, sweep_parts, sweep_slots};
+use crate::math::parallel::{sweep, sweep_parts, sweep_slots};
+use crate::math::reduce::sum;
 
 /// Softness ε in 2-D and 3-D: the square of the tolerated relative error of linear consistency in units of relative
 /// changes of s, measured by w and b. In 3-D, the errors with 0.02 would still be visible in the pressure on a sphere.

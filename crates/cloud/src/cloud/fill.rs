@@ -17,7 +17,7 @@ use super::{CloudSpec, Transform};
 use crate::case::Side;
 use crate::geometry::Surface;
 use crate::math::hilbert::hilbert_index;
-use crate::math::sweep::{CHUNK, order_by_key, parts, sweep_parts};
+use crate::math::parallel::{CHUNK, order_by_key, parts, sweep_parts};
 use crate::math::{Bounds, Vector};
 
 /// Minimum distance, in spacings, between fluid particles and interface particles.

@@ -14,7 +14,7 @@ use super::Interface;
 use super::grid::Grid;
 use super::tree::Tree;
 use crate::geometry::{Chain, Surface};
-use crate::math::sweep::{order_by_key, sweep};
+use crate::math::parallel::{order_by_key, sweep};
 use crate::math::{Bounds, Vector};
 
 /// Spacing along the outline, in background cells (2-D).
@@ -37,6 +37,10 @@ const AROUND: f64 = 2.0;
 const ON_PLANE: f64 = 1e-6;
 /// Number of Lloyd iterations.
 const LLOYD_ROUNDS: usize = 8;
+/// Samples over those that the area asks for from which a surface consists of slivers: triangles that are halved leave 3 to 8.
+const MANY: f64 = 16.0;
+/// Rounding of distances, over them.
+const ROUNDING: f64 = 1e-9;
 /// Samples whose normals differ more (cosine) belong to different particles.
 const SAME_SIDE: f64 = -0.2;
 
@@ -265,16 +269,10 @@ impl<const D: usize> Walk<'_, D> {
 struct Sample<const D: usize> {
     x: Vector<D>,
     normal: Vector<D>,
-    /// Part of its element.
-    share: f64,
+    /// Area vector.
+    area: Vector<D>,
     spacing: f64,
     element: u32,
-}
-
-impl<const D: usize> Sample<D> {
-    fn area(&self, surface: &Surface<D>) -> Vector<D> {
-        surface.element_area_vector(self.element) * self.share
-    }
 }
 
 /// 3-D: dense samples, greedy pick, Lloyd.
@@ -284,14 +282,15 @@ fn scatter<const D: usize>(surface: &Surface<D>, tree: &Tree<D>, planes: &[Plane
         |x, normal, share, element| {
             let spacing = tree.leaf_at(x).size;
             let inside = planes.iter().all(|p| p.1 * (x[p.0] - p.2) < -ON_PLANE * spacing);
-            inside.then_some(Sample { x: *x, normal: *normal, share, spacing, element })
+            let area = surface.element_area_vector(element) * share;
+            inside.then_some(Sample { x: *x, normal: *normal, area, spacing, element })
         },
     );
     sort_along_curve(&mut samples);
     let (mut chosen, mut owner) = pick(&samples);
     for _ in 0..LLOYD_ROUNDS {
         assign(&samples, &chosen, &mut owner);
-        recentre(surface, &samples, &owner, &mut chosen);
+        recentre(&samples, &owner, &mut chosen);
     }
     assign(&samples, &chosen, &mut owner);
     gather(surface, &samples, &chosen, &owner)
@@ -321,7 +320,8 @@ fn permute<T: Copy>(all: &mut [T], order: &mut [u32]) {
     }
 }
 
-/// Samples that keep `PICK_SPACING` between them, first come first served, and for every sample the one that is in its way.
+/// Samples that keep `PICK_SPACING` between them, first come first served, and for every sample the one that is in its way: the nearest, or
+/// where samples crowd on slivers any one of them.
 fn pick<const D: usize>(samples: &[Sample<D>]) -> (Vec<usize>, Vec<u32>) {
     // one grid for each spacing, so that the bins suit all queries
     let mut grids: BTreeMap<u64, Grid<D>> = BTreeMap::new();
@@ -330,8 +330,16 @@ fn pick<const D: usize>(samples: &[Sample<D>]) -> (Vec<usize>, Vec<u32>) {
     }
     let mut chosen: Vec<usize> = Vec::new();
     let mut owner = vec![0; samples.len()];
+    let crowded = are_crowded(samples);
     for (k, s) in samples.iter().enumerate() {
         let r = PICK_SPACING * s.spacing;
+        if let Some(last) = owner[..k].last().copied().filter(|_| crowded) {
+            let o = &samples[chosen[last as usize]];
+            if (o.x - s.x).norm_squared() <= r * r && o.normal.dot(&s.normal) >= SAME_SIDE {
+                owner[k] = last;
+                continue;
+            }
+        }
         let mut best = (r * r, u32::MAX);
         grids[&s.spacing.to_bits()].near(&s.x, r, |j| {
             let o = &samples[chosen[j as usize]];
@@ -350,23 +358,53 @@ fn pick<const D: usize>(samples: &[Sample<D>]) -> (Vec<usize>, Vec<u32>) {
     (chosen, owner)
 }
 
+/// True on a surface of slivers, whose pieces are as long as usual but much narrower.
+fn are_crowded<const D: usize>(samples: &[Sample<D>]) -> bool {
+    let asked = |s: &Sample<D>| s.area.norm() / (SAMPLE_SIZE * s.spacing).powi(D as i32 - 1);
+    samples.len() as f64 > MANY * samples.iter().map(asked).sum::<f64>()
+}
+
 /// Makes `owner` the chosen sample nearest to each sample, on the same side of thin bodies: its owner so far or one of the
 /// others around that.
 fn assign<const D: usize>(samples: &[Sample<D>], chosen: &[usize], owner: &mut [u32]) {
-    let around = around(samples, chosen);
+    let near = by_distance(samples, chosen);
     let old = owner.to_vec();
     sweep(owner, |k| {
         let s = &samples[k];
         let mut best = (f64::INFINITY, old[k]);
-        for j in std::iter::once(&old[k]).chain(&around[old[k] as usize]) {
-            let o = &samples[chosen[*j as usize]];
+        let mut try_one = |j: u32| {
+            let o = &samples[chosen[j as usize]];
             let r = (o.x - s.x).norm_squared();
-            if o.normal.dot(&s.normal) >= SAME_SIDE && (r, *j) < best {
-                best = (r, *j);
+            if o.normal.dot(&s.normal) >= SAME_SIDE && (r, j) < best {
+                best = (r, j);
             }
+            best.0
+        };
+        let mut reach = try_one(old[k]).sqrt();
+        let own = (samples[chosen[old[k] as usize]].x - s.x).norm();
+        for (apart, j) in &near[old[k] as usize] {
+            // none of those to come is nearer: the triangle's inequality
+            if (apart - own) * (1.0 - ROUNDING) > reach {
+                break;
+            }
+            reach = try_one(*j).sqrt();
         }
         best.1
     });
+}
+
+/// For each chosen sample the others around it with their distances, the nearest first.
+fn by_distance<const D: usize>(samples: &[Sample<D>], chosen: &[usize]) -> Vec<Vec<(f64, u32)>> {
+    let around = around(samples, chosen);
+    let mut near = vec![Vec::new(); chosen.len()];
+    sweep(&mut near, |j| {
+        let x = &samples[chosen[j]].x;
+        let apart = |m: &u32| ((samples[chosen[*m as usize]].x - *x).norm(), *m);
+        let mut list: Vec<(f64, u32)> = around[j].iter().map(apart).collect();
+        list.sort_unstable_by(|a, b| a.0.total_cmp(&b.0));
+        list
+    });
+    near
 }
 
 /// For each chosen sample the others within `AROUND` spacings of it.
@@ -396,10 +434,10 @@ fn around<const D: usize>(samples: &[Sample<D>], chosen: &[usize]) -> Vec<Vec<u3
 }
 
 /// Moves each chosen sample to the one nearest to the centre of its set.
-fn recentre<const D: usize>(surface: &Surface<D>, samples: &[Sample<D>], owner: &[u32], chosen: &mut [usize]) {
+fn recentre<const D: usize>(samples: &[Sample<D>], owner: &[u32], chosen: &mut [usize]) {
     let mut centre = vec![(Vector::<D>::ZERO, 0.0); chosen.len()];
     for (s, o) in samples.iter().zip(owner) {
-        let w = s.area(surface).norm();
+        let w = s.area.norm();
         centre[*o as usize].0 += s.x * w;
         centre[*o as usize].1 += w;
     }
@@ -417,7 +455,7 @@ fn recentre<const D: usize>(surface: &Surface<D>, samples: &[Sample<D>], owner: 
 fn gather<const D: usize>(surface: &Surface<D>, samples: &[Sample<D>], chosen: &[usize], owner: &[u32]) -> Placed<D> {
     let mut placed = Placed::default();
     let mut area = vec![Vector::<D>::ZERO; chosen.len()];
-    samples.iter().zip(owner).for_each(|(s, o)| area[*o as usize] += s.area(surface));
+    samples.iter().zip(owner).for_each(|(s, o)| area[*o as usize] += s.area);
     let around = around(samples, chosen);
     let mut curvature = vec![[Vector::ZERO; D]; chosen.len()];
     sweep(&mut curvature, |j| {
@@ -457,4 +495,55 @@ fn shape_operator<const D: usize>(normal: &Vector<D>, around: &[(Vector<D>, Vect
         (0..D).for_each(|r| k[r] += *w * c[r]);
     }
     k
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Samples on a plate, `across` to a sample's size along one of its sides, and one along the other.
+    fn plate(across: usize) -> Vec<Sample<3>> {
+        let size = SAMPLE_SIZE * 0.1;
+        let sample = |k: usize| Sample {
+            x: Vector([(k / 80) as f64 * size / across as f64, (k % 80) as f64 * size, 0.5]),
+            normal: Vector([0.0, 0.0, 1.0]),
+            area: Vector([0.0, 0.0, size * size / across as f64]),
+            spacing: 0.1,
+            element: 0,
+        };
+        let mut samples: Vec<Sample<3>> = (0..80 * 80 * across).map(sample).collect();
+        sort_along_curve(&mut samples);
+        samples
+    }
+
+    #[test]
+    fn every_sample_belongs_to_the_nearest_particle() {
+        for across in [1, 20] {
+            let samples = plate(across);
+            assert_eq!(are_crowded(&samples), across > 1);
+            let (mut chosen, mut owner) = pick(&samples);
+            for _ in 0..2 {
+                assign(&samples, &chosen, &mut owner);
+                let apart = |s: &Sample<3>, j: u32| (samples[chosen[j as usize]].x - s.x).norm_squared();
+                for (s, own) in samples.iter().zip(&owner).step_by(37) {
+                    let nearest =
+                        (0..chosen.len() as u32).map(|j| (apart(s, j), j)).reduce(|a, b| if b < a { b } else { a });
+                    assert_eq!(Some((apart(s, *own), *own)), nearest);
+                }
+                recentre(&samples, &owner, &mut chosen);
+            }
+        }
+    }
+
+    #[test]
+    fn picked_samples_keep_their_distance_and_leave_no_gap() {
+        for across in [1, 20] {
+            let samples = plate(across);
+            let chosen = pick(&samples).0;
+            let r = PICK_SPACING * 0.1;
+            let apart = |a: usize, b: usize| (samples[a].x - samples[b].x).norm();
+            assert!(chosen.iter().enumerate().all(|(k, a)| chosen[..k].iter().all(|b| apart(*a, *b) > r)));
+            assert!((0..samples.len()).step_by(11).all(|k| chosen.iter().any(|a| apart(*a, k) <= r)));
+        }
+    }
 }

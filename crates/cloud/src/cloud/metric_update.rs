@@ -7,8 +7,8 @@
 use super::Cloud;
 use super::operators::{Operators, WallFace};
 use crate::math::Vector;
+use crate::math::parallel::{sweep, sweep_parts};
 use crate::math::square::{cofactors, determinant, times};
-use crate::math::sweep::{sweep, sweep_parts};
 
 /// Rows of a D × D matrix.
 type Matrix<const D: usize> = [Vector<D>; D];

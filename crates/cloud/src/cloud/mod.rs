@@ -40,7 +40,7 @@ use std::ops::{Index, Range};
 use crate::case::Side;
 use crate::math::Vector;
 use crate::math::jet::Scalar;
-use crate::math::sweep::sweep;
+use crate::math::parallel::sweep;
 
 pub use layout::Layout;
 pub use neighbours::Neighbours;

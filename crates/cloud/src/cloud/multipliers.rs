@@ -5,8 +5,8 @@
 //! four numbers. The kernels are therefore plain arithmetic on four numbers at a time.
 use crate::math::Vector;
 use crate::math::conjugate;
+use crate::math::parallel::sweep_rows;
 use crate::math::rounded::{of_upper_half, upper_half};
-use crate::math::sweep::sweep_rows;
 
 /// Smallest pivot of a block relative to its diagonal.
 const FLAT: f64 = 1e-12;

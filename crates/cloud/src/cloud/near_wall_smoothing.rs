@@ -23,7 +23,7 @@ use super::Transform;
 use super::particles::Particles;
 use crate::geometry::Surface;
 use crate::math::Vector;
-use crate::math::sweep::sweep;
+use crate::math::parallel::sweep;
 
 /// Height of the first row in spacings: the centre of a cell whose axis is normal to the wall.
 const FIRST: f64 = 0.5;

@@ -13,7 +13,7 @@ use super::Transform;
 use super::layers::Source;
 use super::particles::Particles;
 use crate::geometry::Surface;
-use crate::math::sweep::{CHUNK, sweep_each, sweep_parts};
+use crate::math::parallel::{CHUNK, sweep_each, sweep_parts};
 use crate::math::{Bounds, Vector};
 
 /// Distance to the wall, in spacings, below which the ball rule applies to the pairs of a particle.

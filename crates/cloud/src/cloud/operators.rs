@@ -14,8 +14,8 @@ use super::neighbours::Neighbours;
 use super::{Cloud, Ghost, Transform};
 use crate::math::Vector;
 use crate::math::least_squares::{bounded_inverse, gradient_weight, normal_inverse, normal_matrix};
+use crate::math::parallel::{parts, sweep, sweep_each, sweep_each_slot, sweep_parts, sweep_two_parts};
 use crate::math::square::{Symmetric, cofactors, determinant};
-use crate::math::sweep::{parts, sweep, sweep_each, sweep_each_slot, sweep_parts, sweep_two_parts};
 
 /// Minimum and maximum number of rows of a part, in 2-D and in 3-D: large enough that few edges are visited twice (with
 /// 4,096 rows in 3-D, a quarter of the edges), small enough to fit into the second-level cache and to balance threads.

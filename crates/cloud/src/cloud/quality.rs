@@ -13,7 +13,7 @@ use super::grid::Grid;
 use super::layer_termination::{self, place};
 use super::repair::Sums;
 use crate::math::Vector;
-use crate::math::sweep::{CHUNK, sweep_each};
+use crate::math::parallel::{CHUNK, sweep_each};
 
 /// Number of places listed for each measure.
 const WORST: usize = 5;

@@ -22,7 +22,7 @@ use super::neighbours::{Rows, Search, Seen};
 use super::particles::Particles;
 use crate::math::Vector;
 use crate::math::least_squares::condition_symmetric;
-use crate::math::sweep::sweep;
+use crate::math::parallel::sweep;
 
 /// Condition number of the normal matrix above which a row is insufficient.
 pub const WORST_CONDITION: f64 = 1e3;

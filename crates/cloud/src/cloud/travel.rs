@@ -22,7 +22,7 @@ use super::tree::{Leaf, Tree};
 use super::{Cloud, CloudError, CloudSpec, Transform};
 use crate::case::Side;
 use crate::geometry::Surface;
-use crate::math::sweep::{CHUNK, order_by_key, parts, sweep, sweep_each, sweep_parts};
+use crate::math::parallel::{CHUNK, order_by_key, parts, sweep, sweep_each, sweep_parts};
 use crate::math::{Bounds, Vector};
 use crate::motion::RigidPose;
 

@@ -2,7 +2,7 @@
 //!
 //! Cells are addressed by integers in units of the finest possible cell, so that neighbours are found by arithmetic alone.
 //! The forest is balanced: cells that touch, corners included, differ by one level at most.
-use crate::math::sweep::sweep;
+use crate::math::parallel::sweep;
 use crate::math::{Bounds, Vector};
 
 /// Deepest level below a root, for a box of many roots and of few roots: a cell is addressed by 31 bits.

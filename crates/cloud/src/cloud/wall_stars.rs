@@ -11,8 +11,8 @@ use super::grid::Grid;
 use super::interface::Placed;
 use super::layers::{Around, Beside};
 use crate::math::Vector;
+use crate::math::parallel::sweep;
 use crate::math::square::frame_of;
-use crate::math::sweep::sweep;
 
 /// Search radius in spacings: the cells of Lloyd's partition have radii below 0.8, and spacings may double.
 const REACH: f64 = 2.6;

@@ -6,7 +6,7 @@
 use super::view::View;
 use crate::case::Sensor;
 use crate::cloud::sources::Source;
-use crate::math::sweep::sweep_parts;
+use crate::math::parallel::sweep_parts;
 
 /// Pressure jump over mean pressure that asks for refinement.
 const SHOCK: f64 = 0.06;

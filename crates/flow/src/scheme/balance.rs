@@ -19,7 +19,8 @@ use super::discretisation::CloudMotion;
 use super::reconstruct::smooth_step;
 use super::view::View;
 use crate::cloud::tree::Tree;
-use crate::math::sweep::{sweep_parts, sweep_slots};
+use crate::math::parallel::{sweep_parts, sweep_slots};
+use crate::math::reduce::{maximum, sum};
 use crate::math::{Bounds, Vector};
 use crate::physics::{Conserved, Primitive, n_variables};
 
@@ -161,7 +162,7 @@ impl<'a, const D: usize> Balance<'a, D> {
         }
         let places: Vec<Vector<D>> = range.clone().map(|i| frame.place(i)).collect();
         let before = Bounds::around(&view.reference().x[range.clone()]);
-        let spacing = range.map(|i| frame.discretisation.cloud.spacing[i]).fold(0.0, f64::max);
+        let spacing = maximum(range.len(), |w| frame.discretisation.cloud.spacing[range.start + w]);
         let zone = Zone::around(Bounds::around(&places), spacing, &gaps(&view.reference().tree, &before));
         Some(Self { view, free, zone })
     }
@@ -244,13 +245,14 @@ impl<'a, const D: usize> Balance<'a, D> {
 
     /// Volume that the particles beside the walls lack, over the sum of the shares of the walls: ∫ ∇·(φ x) dV is known from the
     /// walls and from the pieces that cut the zone.
-    fn missing(&self, volume: &impl Fn(usize) -> f64, cut: &[SidePiece<D>]) -> f64 {
+    fn missing(&self, volume: &(impl Fn(usize) -> f64 + Sync), cut: &[SidePiece<D>]) -> f64 {
         let (frame, cloud) = (self.view.frame, self.view.cloud());
         let middle = self.zone.bounds().centre();
-        let cut: f64 = cut.iter().map(|t| self.zone.at(&t.x).0 * (t.x - middle).dot(&t.area)).sum();
-        let walls = cloud.interface_range().zip(&cloud.interface);
-        let exact =
-            walls.map(|(i, w)| -(frame.place(i) - middle).dot(&frame.to_inertial_axes(&w.area))).sum::<f64>() + cut;
+        let cut = sum(cut.len(), |k| self.zone.at(&cut[k].x).0 * (cut[k].x - middle).dot(&cut[k].area));
+        let n_walls = cloud.interface.len();
+        let exact = sum(n_walls, |w| {
+            -(frame.place(cloud.n_fluid + w) - middle).dot(&frame.to_inertial_axes(&cloud.interface[w].area))
+        }) + cut;
         let particle = |i: usize| {
             let v = volume(i);
             let part = |x: Vector<D>| {
@@ -261,8 +263,8 @@ impl<'a, const D: usize> Balance<'a, D> {
             let (count, sum) = all.fold((0.0, 0.0), |(count, sum), value| (count + 1.0, sum + value));
             v * sum / count
         };
-        let found: f64 = (0..cloud.n_fluid).map(particle).sum();
-        let shares: f64 = (0..cloud.interface.len()).map(|w| self.share(w)).sum();
+        let found = sum(cloud.n_fluid, particle);
+        let shares = sum(n_walls, |w| self.share(w));
         (exact - found) / D as f64 / shares
     }
 

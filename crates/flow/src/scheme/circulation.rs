@@ -1,7 +1,7 @@
 //! The circulation of a start, taken out.
 use super::fluid::{Fluid, Work};
 use super::frame::Frame;
-use crate::math::sweep::sweep_rows;
+use crate::math::parallel::sweep_rows;
 use crate::physics::{Conserved, Primitive, n_variables};
 
 /// Least part of the square of the speed of sound that is left.

@@ -11,7 +11,7 @@ use crate::cloud::{Cloud, Interface, Strain};
 use crate::math::Vector;
 use crate::math::jet::Jet;
 use crate::math::moving_fit::{Basis, weights};
-use crate::math::sweep::sweep_slots;
+use crate::math::parallel::sweep_slots;
 use crate::motion::{BodyMotion, Carried, Expansion, tangents};
 
 /// Number of surrounding interface particles for these derivatives, in 2-D and 3-D.

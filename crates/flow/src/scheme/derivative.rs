@@ -49,7 +49,7 @@ fn along<const D: usize>(u: &Conserved<D>, v: &Conserved<D>) -> Conserved<D, Dua
 mod tests {
     use super::*;
     use crate::case::{Flux, Limiter};
-    use crate::math::sweep::norm;
+    use crate::math::reduce::norm;
     use crate::motion::{BodyMotion, TimeFunction};
     use crate::scheme::{CloudMotion, built};
     use crate::system::{Instant, System, Term};

@@ -15,8 +15,8 @@ use super::wall_fits::WallFits;
 use super::wall_motion::{WallMotion, rotation_rate};
 use crate::math::Vector;
 use crate::math::jet::Jet;
+use crate::math::parallel::{sweep, sweep_slots};
 use crate::math::square::times;
-use crate::math::sweep::{sweep, sweep_slots};
 use crate::motion::{BodyMotion, RigidPose, positions};
 use crate::system::{Instant, Rate, Term};
 

@@ -13,9 +13,9 @@ use crate::cloud::Cloud;
 use crate::math::Vector;
 use crate::math::dual::Dual;
 use crate::math::jet::Scalar;
-use crate::math::sweep::sweep_rows;
+use crate::math::parallel::sweep_rows;
 use crate::physics::{Gas, Primitive, n_variables};
-use crate::system::Field as Unknowns;
+use crate::system::{Field as Unknowns, Name};
 
 /// A field of states.
 pub type Field<const D: usize> = Arc<dyn Fn(&Vector<D>) -> Primitive<D> + Send + Sync>;
@@ -110,13 +110,13 @@ impl<const D: usize, S: Scalar> Work<D, S> {
 impl<const D: usize> Fluid<D> {
     /// The unknowns on a cloud: density, momentum and energy of every fluid particle; density measures a residual.
     pub fn unknowns(cloud: &Cloud<D>) -> [Unknowns; 1] {
-        [Unknowns::new("gas", cloud.n_fluid, n_variables(D)).measured_by(1)]
+        [Unknowns::new(Name::Gas, cloud.n_fluid, n_variables(D)).measured_by(1)]
     }
 
     /// The state at the start.
     pub fn start(&self) -> Vec<f64> {
         let cloud = &self.discretisation.cloud;
-        let mut u = vec![0.0; self.fields[0].len()];
+        let mut u = vec![0.0; self.fields.iter().map(Unknowns::len).sum()];
         sweep_rows(&mut u, n_variables(D), |i, row| self.gas.conserved(&(self.held)(&cloud.x[i])).store(row));
         u
     }

@@ -4,7 +4,8 @@ use std::sync::Arc;
 use super::discretisation::CloudMotion;
 use super::fluid::{Fluid, Work};
 use super::frame::{Frame, LagrangianStep};
-use crate::math::sweep::{first, maximum, sweep_rows};
+use crate::math::parallel::sweep_rows;
+use crate::math::reduce::{first, maximum};
 use crate::physics::Conserved;
 use crate::system::{Fault, Field as Unknowns, Instant, Rate, System};
 

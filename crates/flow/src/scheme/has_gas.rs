@@ -2,10 +2,11 @@
 //!
 //! Those who look at a flow (loads, pictures, files) need the gas, its frame, its storage and its part of the state. A system
 //! of gas and structure has them among others; the gas alone is all of them itself.
+use std::borrow::Cow;
 use std::ops::Range;
 
 use super::{Fluid, Frame, Work};
-use crate::system::{Implicit, System};
+use crate::system::{Implicit, Name};
 
 /// What passes between a gas and the structures in it, and what these hold; in the units of the solver.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -43,8 +44,6 @@ pub trait HasGas<const D: usize>: Implicit {
     fn gas(&self) -> &Fluid<D>;
     /// Puts the gas on another cloud.
     fn set_gas(&mut self, gas: Fluid<D>);
-    /// The unknowns of the gas in the state.
-    fn gas_unknowns(&self) -> Range<usize>;
     /// The frame of the gas.
     fn gas_frame<'a>(&self, frame: &'a Self::Frame) -> &'a Frame<D>;
     /// The storage of the gas.
@@ -60,14 +59,19 @@ pub trait HasGas<const D: usize>: Implicit {
         None
     }
 
+    /// The unknowns of the gas in the state.
+    fn gas_unknowns(&self) -> Range<usize> {
+        self.unknowns_of(Name::Gas)
+    }
+
     /// The part of the state that is the gas.
     fn gas_state<'a>(&self, u: &'a [f64]) -> &'a [f64] {
         &u[self.gas_unknowns()]
     }
 
     /// The coordinates of bodies that are unknowns; empty where all motion is prescribed.
-    fn coordinates<'a>(&self, u: &'a [f64]) -> &'a [f64] {
-        &u[self.placing()]
+    fn coordinates<'a>(&self, u: &'a [f64]) -> Cow<'a, [f64]> {
+        self.placing().values(u)
     }
 
     /// The state `u` with another one of the gas, on a cloud of any size.
@@ -84,10 +88,6 @@ impl<const D: usize> HasGas<D> for Fluid<D> {
 
     fn set_gas(&mut self, gas: Fluid<D>) {
         *self = gas;
-    }
-
-    fn gas_unknowns(&self) -> Range<usize> {
-        0..self.len()
     }
 
     fn gas_frame<'a>(&self, frame: &'a Frame<D>) -> &'a Frame<D> {

@@ -13,7 +13,7 @@ use super::frame::Frame;
 use super::lanes::Number;
 use crate::math::Vector;
 use crate::math::block_matrix::Rows;
-use crate::math::sweep::sweep_rows;
+use crate::math::parallel::sweep_rows;
 use crate::physics::{Conserved, n_variables};
 
 impl<const D: usize> Fluid<D> {

@@ -22,7 +22,8 @@ use super::frame::{Discretisation, Frame, LagrangianStep};
 use super::travel::set_ghost_velocities;
 use crate::cloud::Cloud;
 use crate::math::Vector;
-use crate::math::sweep::{first, sweep, sweep_each, sweep_parts};
+use crate::math::parallel::{sweep, sweep_each, sweep_parts};
+use crate::math::reduce::{first, maximum};
 use crate::physics::{Gas, Primitive};
 
 /// Strength A of the shift.
@@ -86,7 +87,7 @@ fn reach<const D: usize>(discretisation: &Discretisation<D>, velocity: &[Vector<
         let rate = |i: usize, j: usize| (velocity[i] - velocity[j]).norm() / (x[i] - x[j]).norm();
         op.edges(k).iter().map(|e| rate(e.i(), e.j())).fold(0.0, f64::max)
     });
-    REACH / fastest.iter().fold(f64::MIN_POSITIVE, |m: f64, r| m.max(*r))
+    REACH / maximum(fastest.len(), |k| fastest[k]).max(f64::MIN_POSITIVE)
 }
 
 /// Sums over the neighbours of a particle.

@@ -2,6 +2,7 @@
 use crate::math::Vector;
 use crate::math::dual::Dual;
 use crate::math::jet::Scalar;
+use crate::math::reduce;
 use crate::physics::{Conserved, Primitive};
 
 /// Edges that are computed together: enough to fill vectors, few enough that all of it stays in the first cache.
@@ -22,6 +23,8 @@ pub trait Number: Scalar + Send + Sync + 'static {
     fn put(self, many: &mut Self::Many, k: usize);
     /// What a residual tells of it: the value, or the change.
     fn told(self) -> f64;
+    /// Sum of `f(i)` over `0..n`.
+    fn sum(n: usize, f: impl Fn(usize) -> Self + Sync) -> Self;
 }
 
 impl Number for f64 {
@@ -41,6 +44,10 @@ impl Number for f64 {
     #[inline(always)]
     fn told(self) -> f64 {
         self
+    }
+
+    fn sum(n: usize, f: impl Fn(usize) -> Self + Sync) -> Self {
+        reduce::sum(n, f)
     }
 }
 
@@ -62,6 +69,12 @@ impl Number for Dual {
     #[inline(always)]
     fn told(self) -> f64 {
         self.derivative
+    }
+
+    fn sum(n: usize, f: impl Fn(usize) -> Self + Sync) -> Self {
+        // the value is the same bits as that of plain numbers
+        let value = reduce::sum(n, |i| f(i).value);
+        Self { value, derivative: reduce::sum(n, |i| f(i).derivative) }
     }
 }
 

@@ -11,7 +11,7 @@
 //! zero where a particle is nearer to it than to the body, and these planes do not limit the extent of the motion.
 use crate::cloud::Cloud;
 use crate::math::jet::Jet;
-use crate::math::sweep::sweep_slots;
+use crate::math::parallel::sweep_slots;
 use crate::math::{Bounds, Vector};
 use crate::motion::{BodyMotion, Carried, PointTrajectory, RigidPose, SurfaceNet};
 

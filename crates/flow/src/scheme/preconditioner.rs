@@ -8,7 +8,7 @@ use crate::math::Vector;
 use crate::math::block_matrix::BlockMatrix;
 use crate::math::incomplete::Incomplete;
 use crate::math::multilevel::Multilevel;
-use crate::math::sweep::sweep_rows;
+use crate::math::parallel::sweep_rows;
 use crate::physics::n_variables;
 use crate::system::{Hierarchy, Implicit, Period, Preconditioner, Reach, RightHandSide, Shift};
 

@@ -5,7 +5,7 @@ use super::edge_flux::half_face;
 use super::fluid::{Fluid, Work};
 use super::frame::Frame;
 use crate::math::Vector;
-use crate::math::sweep::{fill, sweep, sweep_parts};
+use crate::math::parallel::{fill, sweep, sweep_parts};
 
 impl<const D: usize> Fluid<D> {
     /// Fills `rate` from the states of fluid particles in `work`.

@@ -13,7 +13,8 @@ use super::travel::{ParticleKinematics, Travel};
 use crate::cloud::repair::WORST_CONDITION;
 use crate::cloud::{Cloud, CloudError, Operators};
 use crate::math::Vector;
-use crate::math::sweep::{first, maximum, sweep_each};
+use crate::math::parallel::sweep_each;
+use crate::math::reduce::{first, maximum};
 
 /// Distance, in mean spacings, by which neighbours may move relative to one another before lists are made anew.
 const SLACK: f64 = 0.25;

@@ -33,7 +33,7 @@ use crate::case::Limiter;
 use crate::cloud::Edge;
 use crate::cloud::operators::WallFace;
 use crate::math::Vector;
-use crate::math::sweep::sweep_parts;
+use crate::math::parallel::sweep_parts;
 use crate::physics::{Conserved, n_variables};
 use crate::system::System;
 

@@ -8,7 +8,7 @@ use super::frame::Frame;
 use super::lanes::Number;
 use crate::case::Side;
 use crate::math::dual::Dual;
-use crate::math::sweep::sweep_each_slot;
+use crate::math::parallel::sweep_each_slot;
 use crate::physics::Primitive;
 use crate::physics::outgoing::outgoing;
 

@@ -15,8 +15,8 @@ use super::wall_state::{Wall, no_slip_wall, slip_wall};
 use crate::case::Side;
 use crate::cloud::Edge;
 use crate::math::Vector;
+use crate::math::parallel::{sweep, sweep_each, sweep_parts};
 use crate::math::square::Symmetric;
-use crate::math::sweep::{sweep, sweep_each, sweep_parts};
 use crate::physics::{Conserved, Primitive};
 
 impl<const D: usize> Fluid<D> {
@@ -181,8 +181,8 @@ impl<const D: usize> Fluid<D> {
         let cloud = &frame.discretisation.cloud;
         let walls = &work.state[cloud.interface_range()];
         let far = self.far_field.pressure();
-        let push = |q: &Primitive<D, S>, area: &Vector<D>| Vector::constant(area) * (q.pressure - far);
-        let force = cloud.interface.iter().zip(walls).fold(Vector::zero(), |f, (w, q)| f - push(q, &w.area));
+        let push = |w: usize, d: usize| S::constant(-cloud.interface[w].area[d]) * (walls[w].pressure - far);
+        let force = Vector::from_fn(|d| S::sum(walls.len(), |w| push(w, d)));
         frame.to_inertial_axes(&force)
     }
 }

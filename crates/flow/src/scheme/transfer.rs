@@ -67,7 +67,7 @@ impl<const D: usize> Transfer<'_, D> {
         let n = n_variables(D);
         let mut u = vec![0.0; n * cloud.n_fluid];
         let from = &self.recloud.from;
-        crate::math::sweep::sweep_rows(&mut u, n, |i, row| match from[i] {
+        crate::math::parallel::sweep_rows(&mut u, n, |i, row| match from[i] {
             NEW => row.fill(f64::NAN),
             k => row.copy_from_slice(&self.before[k as usize * n..(k as usize + 1) * n]),
         });

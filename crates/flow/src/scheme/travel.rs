@@ -13,7 +13,8 @@ use super::wall_motion::{WallMotion, rotation_rate};
 use crate::cloud::Cloud;
 use crate::cloud::travel::BackgroundDomain;
 use crate::math::Vector;
-use crate::math::sweep::{maximum, sweep};
+use crate::math::parallel::sweep;
+use crate::math::reduce::maximum;
 use crate::motion::{BodyMotion, RigidPose};
 use crate::system::{Instant, Rate, Term};
 

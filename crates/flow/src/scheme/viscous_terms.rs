@@ -19,7 +19,7 @@ use crate::cloud::operators::WallFace;
 use crate::cloud::{Cloud, Edge};
 use crate::math::Vector;
 use crate::math::block_matrix::Rows;
-use crate::math::sweep::sweep_parts;
+use crate::math::parallel::sweep_parts;
 use crate::physics::viscous::Slopes;
 use crate::physics::{Conserved, Primitive};
 

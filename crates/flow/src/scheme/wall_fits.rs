@@ -7,8 +7,8 @@
 use crate::cloud::Cloud;
 use crate::math::Vector;
 use crate::math::least_squares::Fit;
+use crate::math::parallel::sweep;
 use crate::math::square::frame_of;
-use crate::math::sweep::sweep;
 
 /// Sum of the absolute weights above which a quadratic fit is replaced by a linear one.
 const LARGEST_AMPLIFICATION: f64 = 6.0;

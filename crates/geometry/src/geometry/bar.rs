@@ -49,6 +49,12 @@ impl<const D: usize> Bar<D> {
         BELOW * (0..D).map(|k| (at[k].abs() - self.half[k]).max(0.0)).map(|beyond| beyond * beyond).sum::<f64>()
     }
 
+    /// True when an element lies beyond one of the sides.
+    pub(super) fn misses(&self, corners: &Corners<D>) -> bool {
+        let local = corners.map(|x| self.local(&(x - self.centre)));
+        (0..D).any(|k| local.iter().all(|x| x[k] > self.half[k]) || local.iter().all(|x| x[k] < -self.half[k]))
+    }
+
     /// A segment (`middle` ± `half`) in the axes of the bar, and the bar in them.
     pub(super) fn segment(&self, middle: &Vector<D>, half: &Vector<D>) -> (Vector<D>, Vector<D>, Bounds<D>) {
         let bounds = Bounds { min: -self.half, max: self.half };
@@ -113,5 +119,34 @@ mod tests {
         assert!(Bar::around([blade(0.0), blade(3.0)].into_iter()).is_none());
         let round = [Vector([0.0; 3]), Vector([1.0, 0.0, 0.0]), Vector([0.0, 1.0, 0.0])];
         assert!(Bar::around([round].into_iter()).is_none());
+    }
+
+    #[test]
+    fn what_bars_pass_over_intersects_nothing() {
+        let blades: Vec<Corners<3>> = (0..64).map(|k| blade(0.01 * f64::from(k))).collect();
+        let tree = super::super::tree::Tree::new(&blades);
+        let edges = |a: &Corners<3>, b: &Corners<3>| (0..3).any(|k| simplex::crosses(&a[k], &a[(k + 1) % 3], b));
+        let mut met = 0;
+        for k in 0..400 {
+            let at = |s: f64| {
+                Vector(
+                    [[0.5, 0.5, 13.0], [0.2, 0.15, 7.1], [0.1, 0.12, 11.3]]
+                        .map(|[m, a, w]: [f64; 3]| m + a * (w * s).sin()),
+                )
+            };
+            let needle = [0.0, 0.5, 0.51].map(|s| at(f64::from(k) + s));
+            let every: Vec<u32> = (0..64)
+                .filter(|e| edges(&needle, &blades[*e as usize]) || edges(&blades[*e as usize], &needle))
+                .collect();
+            let mut found = Vec::new();
+            tree.meeting(&needle, |e, corners| {
+                found.extend(simplex::intersection(&needle, corners).map(|_| e));
+                false
+            });
+            found.sort_unstable();
+            assert_eq!(found, every);
+            met += found.len();
+        }
+        assert!(met > 100, "{met}");
     }
 }

@@ -3,10 +3,13 @@
 //! The chord c at a station of the span is the length along x of what lies under or above it; with the area S = ∫ c dy the mean
 //! aerodynamic chord is ∫ c² dy / S, and its leading edge is at ∫ c (x_le, y, z) dy / S.
 use super::Surface;
+use crate::math::parallel::sweep_each;
 use crate::math::{Bounds, Vector};
 
 /// Stations along the span.
 const STATIONS: usize = 1024;
+/// Stations that are cut together.
+const TOGETHER: usize = 16;
 /// Part of the chord at which moments are taken.
 pub(super) const QUARTER: f64 = 0.25;
 /// Distance over the length within which points are as far back as others.
@@ -111,10 +114,18 @@ fn on_the_long_line<const D: usize>(all: &[[Vector<D>; D]], bounds: &Bounds<D>) 
 
 /// Sections of triangles at the coordinates `at` along `axis`, which ascend.
 fn stations_of<const D: usize>(all: &[[Vector<D>; D]], axis: usize, at: &[f64]) -> Vec<Station> {
+    let slack = SAME * Bounds::around(all.iter().flatten()).extent()[0];
+    let mut groups = vec![Vec::new(); at.len().div_ceil(TOGETHER)];
+    let from = |g: usize| g * TOGETHER;
+    sweep_each(&mut groups, |g| group_of(all, axis, &at[from(g)..at.len().min(from(g + 1))], slack));
+    groups.concat()
+}
+
+/// The same of stations that are few enough to be kept in fast memory while triangles go by.
+fn group_of<const D: usize>(all: &[[Vector<D>; D]], axis: usize, at: &[f64], slack: f64) -> Vec<Station> {
     let mut spans: Vec<Vec<[f64; 2]>> = vec![Vec::new(); at.len()];
     let mut ends = vec![[[f64::INFINITY, 0.0, 0.0], [f64::NEG_INFINITY, 0.0, 0.0]]; at.len()];
     let mut rims = vec![[Rim::default(), Rim::default()]; at.len()];
-    let slack = SAME * Bounds::around(all.iter().flatten()).extent()[0];
     for corners in all {
         let heights = corners.iter().map(|c| c[axis]);
         let (low, high) = heights.fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), h| (a.min(h), b.max(h)));
@@ -209,6 +220,15 @@ mod tests {
 
     fn everywhere() -> Bounds<3> {
         Bounds { min: Vector([-1e3; 3]), max: Vector([1e3; 3]) }
+    }
+
+    #[test]
+    fn stations_do_not_depend_on_those_beside_them() {
+        let corners = icosphere(0.5, 3).all_corners();
+        let at: Vec<f64> = (0..40).map(|k| -0.49 + 0.024 * f64::from(k)).collect();
+        let alone: Vec<Station> = at.iter().flat_map(|s| stations_of(&corners, 1, &[*s])).collect();
+        assert_eq!(stations_of(&corners, 1, &at), alone);
+        assert!(alone.iter().all(|s| s.chord > 0.0));
     }
 
     #[test]

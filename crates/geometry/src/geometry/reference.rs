@@ -5,6 +5,8 @@
 //! seen from above, with angles below 45° taken out of their placement: larger ones bring files of other axes into those of the case. What
 //! stands upright, as a wing does that is drawn with its span along z, is measured as it is seen from the side.
 //! Of several bodies the largest wing that lies counts; without wings all that is seen from above, but no fin.
+use std::sync::{Arc, Mutex};
+
 use super::placement::{placed, shift, turned};
 use super::planform::{Planform, QUARTER, planform_of};
 use super::{Surface, loft};
@@ -21,6 +23,10 @@ pub fn reference<const D: usize>(
     within: &Bounds<D>,
     body: Option<usize>,
 ) -> Planform {
+    surface.measured.find(format!("{bodies:?} {within:?} {body:?}"), || measure(bodies, surface, within, body))
+}
+
+fn measure<const D: usize>(bodies: &[Body], surface: &Surface<D>, within: &Bounds<D>, body: Option<usize>) -> Planform {
     let main = body.or_else(|| main_body(bodies, surface, within));
     match main.and_then(|k| Some((k, bodies.get(k)?))) {
         Some((k, body)) => of_body(body, k, surface, within),
@@ -30,6 +36,22 @@ pub fn reference<const D: usize>(
             let round = !bodies.is_empty() && bodies.iter().all(is_round);
             Planform { chord: if round { lengths.fold(0.0, f64::max) } else { seen.chord }, ..seen }
         }
+    }
+}
+
+/// Reference values that were found of a surface, by what they are of: a case asks for the same ones several times.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Measured(Arc<Mutex<Vec<(String, Planform)>>>);
+
+impl Measured {
+    fn find(&self, key: String, measure: impl FnOnce() -> Planform) -> Planform {
+        let known = self.0.lock().ok().and_then(|all| all.iter().find(|(of, _)| *of == key).map(|(_, seen)| *seen));
+        // not while the list is locked: measuring is parallel work
+        known.unwrap_or_else(|| {
+            let seen = measure();
+            self.0.lock().into_iter().for_each(|mut all| all.push((key.clone(), seen)));
+            seen
+        })
     }
 }
 

@@ -1,7 +1,7 @@
 //! Sampling of a surface, for refinement sources and interface particles.
 use super::surface::{Element, Surface};
 use crate::math::Vector;
-use crate::math::sweep::sweep_each;
+use crate::math::parallel::sweep_each;
 
 /// Number of elements that one parallel task samples.
 const GROUP: usize = 256;

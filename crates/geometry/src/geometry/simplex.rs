@@ -150,6 +150,9 @@ fn line_pierces<const D: usize>(a: &Vector<D>, b: &Vector<D>, c: &Corners<D>) ->
 /// True when two elements without a common vertex intersect; also gives a point of the intersection.
 pub(super) fn intersection<const D: usize>(e: &Corners<D>, f: &Corners<D>) -> Option<Vector<D>> {
     let edges = if D == 2 { 1 } else { 3 };
+    if is_beside(e, f) || is_beside(f, e) {
+        return None;
+    }
     for (p, q) in [(e, f), (f, e)] {
         for k in 0..edges {
             let (a, b) = (p[k], p[(k + 1) % D]);
@@ -161,6 +164,15 @@ pub(super) fn intersection<const D: usize>(e: &Corners<D>, f: &Corners<D>) -> Op
         }
     }
     None
+}
+
+/// True when `e` lies on one side of the plane of `f`, farther away than what rounding may hide.
+fn is_beside<const D: usize>(e: &Corners<D>, f: &Corners<D>) -> bool {
+    let n = area_vector(f);
+    let heights = e.map(|x| n.dot(&(x - f[0])));
+    let (low, high) = heights.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), x| (l.min(*x), h.max(*x)));
+    let clear = low.max(-high);
+    clear > 0.0 && e.iter().all(|x| clear > ON_SURFACE * n.norm() * (*x - f[0]).norm())
 }
 
 /// The middle of the stretch, longer than `slack`, along which two segments lie on one another. In 2-D alone.

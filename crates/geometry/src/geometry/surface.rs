@@ -6,6 +6,7 @@
 //!
 //! Inside means that the generalised winding number exceeds one half (Jacobson, Kavan, Sorkine-Hornung 2013), which also
 //! holds for surfaces with gaps. Area and volume follow from the area vectors: V = Σ x·A / D.
+use super::reference::Measured;
 use super::shell::{Edge, Exact, Shell};
 use super::tree::Tree;
 use super::{TOUCHING, simplex};
@@ -86,6 +87,7 @@ pub struct Surface<const D: usize> {
     boxes: Vec<Bounds<D>>,
     /// Elements before clipping, of bodies that are clipped by others; empty for the other bodies.
     whole: Vec<Vec<[Vector<D>; D]>>,
+    pub(super) measured: Measured,
 }
 
 impl<const D: usize> Surface<D> {
@@ -112,6 +114,7 @@ impl<const D: usize> Surface<D> {
             bounds: Bounds::EMPTY,
             boxes: Vec::new(),
             whole: vec![Vec::new(); bodies.len()],
+            measured: Measured::default(),
         };
         for skin in skins {
             surface.add(skin);
@@ -125,6 +128,7 @@ impl<const D: usize> Surface<D> {
 
     /// Stores the elements of body number `body` before it was clipped by others.
     pub(super) fn keep_whole(&mut self, body: usize, shell: &Shell<D>) {
+        self.measured = Measured::default();
         self.whole[body] = (0..shell.elements.len()).map(|e| shell.corners(e)).collect();
     }
 
@@ -157,6 +161,7 @@ impl<const D: usize> Surface<D> {
         let corners: Vec<_> = (0..moved.elements.len()).map(|e| moved.corners(e as u32)).collect();
         moved.tree = Tree::new(&corners);
         moved.enclose(&corners);
+        moved.measured = Measured::default();
         moved.exact = vec![Exact::None; self.exact.len()];
         moved
     }
@@ -309,7 +314,7 @@ impl<const D: usize> Surface<D> {
         (0..self.elements.len() as u32).find_map(|e| {
             let corners = self.corners(e);
             let mut found = None;
-            self.tree.overlapping(&simplex::bounds(&corners), |f, other| {
+            self.tree.meeting(&corners, |f, other| {
                 if f > e && !self.neighbours(e, f) {
                     found = simplex::intersection(&corners, other).map(|x| (x, [e, f]));
                 }
@@ -340,7 +345,7 @@ impl<const D: usize> Surface<D> {
         (0..self.elements.len() as u32).find_map(|e| {
             let corners = self.corners(e);
             let mut found = None;
-            other.tree.overlapping(&simplex::bounds(&corners), |_, theirs| {
+            other.tree.meeting(&corners, |_, theirs| {
                 if !corners.iter().any(|x| theirs.contains(x)) {
                     found = simplex::intersection(&corners, theirs);
                 }

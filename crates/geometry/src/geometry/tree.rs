@@ -217,6 +217,14 @@ impl<const D: usize> Tree<D> {
         self.visit(|node| meets(&node.bounds, bounds), f);
     }
 
+    /// Calls `f(element, corners)` for elements that may meet the one with `corners`, until it returns true.
+    pub(super) fn meeting(&self, corners: &Corners<D>, f: impl FnMut(u32, &Corners<D>) -> bool) {
+        let bounds = simplex::bounds(corners);
+        let enter =
+            |node: &Node<D>| meets(&node.bounds, &bounds) && self.bar(node).is_none_or(|bar| !bar.misses(corners));
+        self.visit(enter, f);
+    }
+
     fn visit(&self, enter: impl Fn(&Node<D>) -> bool, mut f: impl FnMut(u32, &Corners<D>) -> bool) {
         let mut stack = [0_u32; STACK];
         let mut depth = usize::from(!self.nodes.is_empty());

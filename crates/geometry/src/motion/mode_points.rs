@@ -209,7 +209,7 @@ pub(super) fn thinned<const D: usize>(
         let mut shape = linear.clone();
         let of = |list: &[Vector<D>]| chosen.iter().map(|k| list[*k]).collect::<Vec<_>>();
         shape.interpolate(&of(points), &of(&rest), axes)?;
-        crate::math::sweep::sweep(&mut errors, |k| (shape.at(&points[k]) - shifts[k]).norm());
+        crate::math::parallel::sweep(&mut errors, |k| (shape.at(&points[k]) - shifts[k]).norm());
         let worst = errors.iter().copied().fold(0.0, f64::max);
         if worst <= CLOSE * linear.size() || target >= MOST_KNOTS {
             return Some(shape);

@@ -3,7 +3,7 @@ use super::law::BodyMotion;
 use super::surface_net::Carried;
 use crate::math::Vector;
 use crate::math::jet::Jet;
-use crate::math::sweep::sweep;
+use crate::math::parallel::sweep;
 
 /// Points of one body with their displacement in each of its modes.
 #[derive(Clone, Debug)]

@@ -22,6 +22,7 @@ use std::path::{Path, PathBuf};
 use lz4_flex::frame::{FrameDecoder, FrameEncoder};
 use serde::{Deserialize, Serialize};
 
+use super::sums;
 use super::table::{FileError, folder_of, write_beside};
 use crate::case::read_regular;
 
@@ -278,6 +279,7 @@ pub fn write(path: &Path, checkpoint: &Checkpoint<'_>) -> Result<(), CheckpointE
     let encoded = encode(checkpoint)?;
     let temporary = write_beside(path, |mut w| put(checkpoint, &encoded, &mut w))?;
     temporary.as_file().sync_all().map_err(FileError::io("write", path))?;
+    sums::announce(path, Some(temporary.path()))?;
     let previous = previous_of(path);
     let replaced = path.exists() && !previous.exists();
     if replaced {
@@ -298,9 +300,11 @@ pub fn write(path: &Path, checkpoint: &Checkpoint<'_>) -> Result<(), CheckpointE
 
 /// Reads a checkpoint; falls back to `….previous` when the file `path` is missing or damaged and that one is whole.
 pub fn read(path: &Path) -> Result<Checkpoint<'static>, CheckpointError> {
-    let from = |path: &Path| {
-        let bytes = read_regular(path).map_err(FileError::io("read", path))?;
-        decode(path, &bytes)
+    let from = |file: &Path| {
+        let bytes = read_regular(file).map_err(FileError::io("read", file))?;
+        let found = decode(file, &bytes)?;
+        sums::check_as(path, file)?;
+        Ok(found)
     };
     from(path).or_else(|problem| from(&previous_of(path)).map_err(|_| problem))
 }

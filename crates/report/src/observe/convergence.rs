@@ -14,7 +14,8 @@
 //! pressure and from momentum differ by, as far as what the latter may still change by does not explain it; what the last iterations
 //! changed; and the digits that are printed. Parts that know nothing of one another add as squares. Where theory has no drag, all that
 //! is found is an error (d'Alembert 1752); in space this is the drag of the entropy in the wake, where nothing else could have made any.
-//! Where loads stall, changing by less than wall pressure and momentum are apart, the bar is no shorter than that.
+//! Where loads stall, changing by less than wall pressure and momentum are apart, the bar is no shorter than that. A load of a section that has
+//! moved to the same side twice, by less than half the second time, has not stalled: it converges.
 use serde::{Deserialize, Serialize};
 
 use super::loads::Coefficients;
@@ -174,7 +175,9 @@ impl Convergence {
             let momentum = through(c).map_or(0.0, |value| {
                 let change = through(b).map_or(0.0, |b| to_come(through(a), [b, value], c.supersonic));
                 let apart = (load(c) - value).abs();
-                let stalled = found.order.is_none() && (load(c) - load(b)).abs() < apart;
+                let last = load(c) - load(b);
+                let converges = halved && (load(b) - load(a)) / last >= 2.0;
+                let stalled = found.order.is_none() && !converges && last.abs() < apart;
                 (DISAGREEMENT * (apart - change).max(0.0)).max(if stalled { apart } else { 0.0 })
             });
             let swing = |finer: &CloudLoads| (load(finer) - load(c)).abs() + part(&finer.unsettled).abs();
@@ -353,6 +356,17 @@ mod tests {
             through(cloud(1.0, 0.27307), 0.27318),
         ];
         assert!(Convergence::of(&clouds, 0.01).unwrap().cl.half_width >= 1.1e-4);
+        // the same last change and the same difference, after larger changes to the same side
+        let clouds = [
+            through(cloud(4.0, 0.2700), 0.2776),
+            through(cloud(2.0, 0.27300), 0.2741),
+            through(cloud(1.0, 0.27301), 0.27312),
+        ];
+        assert!(
+            Convergence::of(&clouds, 0.01).unwrap().cl.half_width < 3e-4,
+            "an eighth or sixteenth of the change before the last"
+        );
+        assert_eq!(Convergence::of(&clouds, 0.01).unwrap().cl.momentum, 0.0);
     }
 
     #[test]

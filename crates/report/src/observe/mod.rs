@@ -11,6 +11,7 @@ pub mod induced;
 pub mod loads;
 pub mod strips;
 pub mod structure;
+pub mod sums;
 pub mod swing;
 pub mod table;
 pub mod usage;

@@ -10,6 +10,7 @@ use std::path::{Path, PathBuf};
 
 use serde::{Deserialize, Serialize};
 
+use super::sums;
 use crate::case::read_regular;
 
 /// How the name of a file begins and ends while it is being written.
@@ -59,6 +60,12 @@ pub enum FileError {
         /// First line that was asked for.
         expected: String,
     },
+    /// A file that is not what a run wrote.
+    #[error("`{}` was changed since the run wrote it: its checksum is not the one in `{}`\nhint: put it back as it was, or begin the run again in another folder", path.display(), sums::FILE)]
+    Sum {
+        /// The file.
+        path: PathBuf,
+    },
     /// A table that is not what a run wrote.
     #[error("`{}` was changed or removed since the run wrote it: it does not begin with what the checkpoint says of it\nhint: put it back as it was, or begin the run again in another folder", path.display())]
     Changed {
@@ -78,6 +85,14 @@ impl FileError {
 /// Writes a file in one step: `fill` writes to a temporary file in the same folder, which then takes the name `path`.
 pub fn write_atomic(path: &Path, fill: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> Result<(), FileError> {
     let file = write_beside(path, fill)?;
+    sums::announce(path, Some(file.path()))?;
+    file.persist(path).map_err(|e| FileError::io("write", path)(e.error))?;
+    Ok(())
+}
+
+/// The same for what is in no list of checksums.
+pub(super) fn write_plain(path: &Path, bytes: &[u8]) -> Result<(), FileError> {
+    let file = write_beside(path, |w| w.write_all(bytes))?;
     file.persist(path).map_err(|e| FileError::io("write", path)(e.error))?;
     Ok(())
 }
@@ -268,7 +283,8 @@ impl History {
 
     /// A table that holds `text` so far.
     fn begin(path: &Path, columns: usize, text: &str) -> Result<Self, FileError> {
-        write_atomic(path, |w| w.write_all(text.as_bytes()))?;
+        sums::announce(path, None)?;
+        write_plain(path, text.as_bytes())?;
         let file = OpenOptions::new().append(true).open(path).map_err(FileError::io("append to", path))?;
         let mut sum = crc32fast::Hasher::new();
         sum.update(text.as_bytes());

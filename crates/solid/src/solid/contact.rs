@@ -8,6 +8,7 @@ use super::body::{Contact, Solid};
 use super::forces::State;
 use crate::cloud::grid::Grid;
 use crate::math::Vector;
+use crate::math::reduce::maximum;
 
 /// Sliding velocity, as a fraction of the speed of pressure waves, below which friction is reduced in proportion.
 const STICKS: f64 = 1e-4;
@@ -60,7 +61,7 @@ impl<const D: usize> Solid<D> {
         if !contact.bodies || !several {
             return;
         }
-        let largest = self.particles.spacing.iter().fold(0.0, |a: f64, b| a.max(*b));
+        let largest = maximum(self.len(), |i| self.particles.spacing[i]);
         let mut grid = Grid::new(largest);
         let at = |i: usize| self.particles.x[i] + Vector(state.displacement[i]);
         let skin: Vec<usize> = (0..self.len()).filter(|i| self.is_on_surface(*i)).collect();

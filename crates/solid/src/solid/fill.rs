@@ -9,7 +9,7 @@ use super::weigh::{weigh_in_plane, weigh_in_space};
 use crate::cloud::grid::Grid;
 use crate::geometry::Surface;
 use crate::math::Vector;
-use crate::math::sweep::sweep_each;
+use crate::math::parallel::sweep_each;
 
 /// Minimum initial distance, in spacings, of inner particles from the surface.
 const CLEAR: f64 = 0.6;

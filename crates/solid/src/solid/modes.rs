@@ -1,11 +1,12 @@
 //! Natural modes of a solid: K φ = ω² M φ.
 use super::system::Structure;
 use crate::math::lanczos;
+use crate::math::reduce::{largest, sum};
 use crate::system::{Mechanical, Moment, System};
 
 /// Which modes are computed.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Wanted {
+pub struct ModeRequest {
     /// Number of modes.
     pub count: usize,
     /// Lower bound of the angular frequency [rad/s]: the modes above it and nearest to it are computed.
@@ -56,7 +57,7 @@ const RIGID: f64 = 1e-6;
 pub fn modes<const D: usize>(
     structure: &Structure<D>,
     u: &[f64],
-    wanted: &Wanted,
+    wanted: &ModeRequest,
 ) -> Result<Vec<Mode>, ModesError> {
     let n = structure.displacements();
     if n > structure.largest_factored() {
@@ -83,16 +84,16 @@ pub fn modes<const D: usize>(
     let all = found.values.iter().zip(&found.vectors).map(|(value, vector)| {
         let square = 1.0 / value - shift;
         let mut shape: Vec<f64> = vector.iter().zip(&root).map(|(x, r)| x / r).collect();
-        let largest = shape.iter().fold(0.0f64, |m, x| if x.abs() > m.abs() { *x } else { m });
+        let largest = largest(n, |k| shape[k].abs()).map_or(0.0, |(k, _)| shape[k]);
         shape.iter_mut().for_each(|x| *x /= largest);
         let omega = if square > (RIGID * fastest).powi(2) { square.sqrt() } else { 0.0 };
         let mut force = vec![0.0; n];
         structure.stiffness(&stiffness, &shape, &mut work, &mut force);
         mask(&mut force);
         let inertia = |k: usize| omega * omega * structure.mass(k) * shape[k];
-        let left: f64 = (0..n).map(|k| (force[k] - inertia(k)).powi(2)).sum();
-        let whole: f64 = (0..n).map(|k| force[k].powi(2).max(inertia(k).powi(2))).sum();
-        let generalised_mass = (0..n).map(|k| structure.mass(k) * shape[k] * shape[k]).sum();
+        let left = sum(n, |k| (force[k] - inertia(k)).powi(2));
+        let whole = sum(n, |k| force[k].powi(2).max(inertia(k).powi(2)));
+        let generalised_mass = sum(n, |k| structure.mass(k) * shape[k] * shape[k]);
         Mode { omega, shape, generalised_mass, left: (left / whole.max(f64::MIN_POSITIVE)).sqrt() }
     });
     Ok(all.filter(|mode| mode.omega >= wanted.above).take(wanted.count).collect())

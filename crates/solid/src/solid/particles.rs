@@ -16,8 +16,9 @@ use crate::cloud::grid::Grid;
 use crate::math::Vector;
 use crate::math::conjugate::{Symmetric, conjugate_gradients};
 use crate::math::least_squares::{gradient_weight, normal_inverse, normal_matrix};
+use crate::math::parallel::{sweep, sweep_each};
+use crate::math::reduce::{first, maximum, sum};
 use crate::math::sparse;
-use crate::math::sweep::{first, maximum, sum, sweep, sweep_each};
 
 /// Radius of a neighbour list in spacings, in 2-D and 3-D, where rows do not define the neighbours. It lies between the
 /// second and the third shell of a square and of a body-centred cubic lattice, so that no diagonal of a sheared cell is

@@ -7,7 +7,8 @@
 use super::body::Solid;
 use super::forces::State;
 use crate::math::Vector;
-use crate::math::sweep::{maximum, sum, sweep_slots};
+use crate::math::parallel::sweep_slots;
+use crate::math::reduce::{maximum, sum};
 
 /// Number of iterations, and the factor applied to their estimate, which approaches ω² from below.
 const ITERATIONS: usize = 60;

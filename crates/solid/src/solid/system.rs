@@ -4,8 +4,9 @@ mod tests;
 
 use super::body::Solid;
 use super::forces::{State, Tangents, Work};
+use crate::math::reduce::{largest_size, minimum};
 use crate::math::sparse::Symmetric;
-use crate::system::{Damping, Fault, Field, Instant, Mechanical, Moment, System};
+use crate::system::{Damping, Fault, Field, Instant, Mechanical, Moment, Name, System};
 
 /// Greatest number of unknowns of a matrix that is factored, in 2-D and 3-D; a factorisation takes a few seconds and a
 /// gigabyte.
@@ -23,9 +24,9 @@ impl<const D: usize> Structure<D> {
     pub fn new(solid: Solid<D>) -> Self {
         let n = solid.len();
         let fields = vec![
-            Field::new("displacement", n, D),
-            Field::new("velocity", n, D),
-            Field::new("history", n, solid.history_width()),
+            Field::new(Name::Other("displacement"), n, D),
+            Field::new(Name::Other("velocity"), n, D),
+            Field::new(Name::History, n, solid.history_width()),
         ];
         Self { solid, fields }
     }
@@ -105,10 +106,8 @@ impl<const D: usize> System for Structure<D> {
     }
 
     fn largest_change(&self, _: &[f64], du: &[f64]) -> f64 {
-        let largest = du[..self.displacements()]
-            .iter()
-            .fold(0.0f64, |m, x| if x.is_finite() { m.max(x.abs()) } else { f64::INFINITY });
-        largest / self.solid.particles.spacing.iter().fold(f64::INFINITY, |a, b| a.min(*b))
+        let spacing = &self.solid.particles.spacing;
+        largest_size(self.displacements(), |k| du[k]) / minimum(spacing.len(), |i| spacing[i])
     }
 
     fn check(&self, _: &f64, u: &[f64]) -> Result<(), Fault> {

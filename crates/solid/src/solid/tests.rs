@@ -2,7 +2,7 @@
 use super::body::{Action, Contact, Damping, Load, Parts, Plane, RigidPlane, Solid, Support};
 use super::fill::{Lattice, relaxed};
 use super::forces::State;
-use super::modes::{Wanted, modes};
+use super::modes::{ModeRequest, modes};
 use super::particles::{Facet, Particles};
 use super::system::Structure;
 use crate::math::Vector;
@@ -125,7 +125,7 @@ fn frequencies_of_a_cantilever_are_those_of_plane_elasticity() {
     {
         let structure = cantilever(through, jitter);
         let start = structure.start(|_| [0.0; 2]);
-        let found = modes(&structure, &start, &Wanted { count: 3, above: 0.0 }).unwrap();
+        let found = modes(&structure, &start, &ModeRequest { count: 3, above: 0.0 }).unwrap();
         for (mode, exact) in found.iter().zip([24.6149, 146.467, 382.05]) {
             let error = 100.0 * (mode.omega / exact - 1.0);
             assert!(error.abs() < bar, "{through} {jitter}: {error} %");
@@ -145,7 +145,7 @@ pub(super) fn cantilever(through: usize, jitter: f64) -> Structure<2> {
 fn a_free_body_has_all_its_rigid_motions() {
     let structure = Structure::new(solid(&lattice([1.0, 0.5, 0.3], [7, 5, 4], 0.1), rubber(), |_| false));
     let start = structure.start(|_| [0.0; 3]);
-    let found = modes(&structure, &start, &Wanted { count: 8, above: 0.0 }).unwrap();
+    let found = modes(&structure, &start, &ModeRequest { count: 8, above: 0.0 }).unwrap();
     assert!(found[..6].iter().all(|m| m.omega == 0.0) && found[6].omega > 0.0);
 }
 
@@ -198,7 +198,7 @@ fn a_cantilever_swings_at_its_frequency_and_keeps_its_energy() {
     let structure = cantilever(5, 0.0);
     let n = structure.displacements();
     let rest = structure.start(|_| [0.0; 2]);
-    let mode = modes(&structure, &rest, &Wanted { count: 1, above: 0.0 }).unwrap().remove(0);
+    let mode = modes(&structure, &rest, &ModeRequest { count: 1, above: 0.0 }).unwrap().remove(0);
     let period = std::f64::consts::TAU / mode.omega;
     let mut u = rest;
     (0..n).for_each(|k| u[n + k] = 0.001 * mode.omega * mode.shape[k]);

@@ -3,7 +3,7 @@ use super::axis::held_on_axis;
 use super::body::{Damping, Parts, Plane, Solid};
 use super::fill::{Lattice, relaxed};
 use super::forces::State;
-use super::modes::{Wanted, modes};
+use super::modes::{ModeRequest, modes};
 use super::particles::{Fill, Particles};
 use super::system::Structure;
 use crate::math::Vector;
@@ -192,7 +192,7 @@ fn a_thin_ring_breathes_as_it_should() {
     let material = Material::new(2.0, Moduli::of_young(8.0, 0.3), Law::Linear);
     let damping = Damping { stabilisation: 0.3, viscosity: 0.0, mass: 0.0, stiffness: 0.0 };
     let structure = Structure::new(body(rows([0.99, -0.01], [1.01, 0.01], [5, 5], 0.0), material, damping));
-    let found = modes(&structure, &structure.start(|_| [0.0; 2]), &Wanted { count: 3, above: 0.0 }).unwrap();
+    let found = modes(&structure, &structure.start(|_| [0.0; 2]), &ModeRequest { count: 3, above: 0.0 }).unwrap();
     assert_eq!(found[0].omega, 0.0);
     // the first is the motion along the axis; a section 0.02 wide turns and breathes at next to the same frequency
     let nearest = found.iter().map(|m| (m.omega / 2.0 - 1.0).abs()).fold(1.0, f64::min);

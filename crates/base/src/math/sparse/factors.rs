@@ -6,7 +6,7 @@
 use super::number::Number;
 use super::panel::{Rows, Target, backward, eliminate, forward, subtract_products};
 use super::tree::Tree;
-use crate::math::sweep::{sweep_each, sweep_each_chunk};
+use crate::math::parallel::{sweep_each, sweep_each_chunk};
 
 /// Parts into which the work is cut at least, where there is enough of it: multiplications of one of them.
 const PIECES: f64 = 16.0;

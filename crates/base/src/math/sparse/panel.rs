@@ -7,7 +7,7 @@ use multiversion::multiversion;
 use multiversion::target::target_cfg_f;
 
 use super::number::{Number, TILE, WIDE};
-use crate::math::sweep::sweep_each_chunk;
+use crate::math::parallel::sweep_each_chunk;
 
 /// Columns that are eliminated one by one.
 const NARROW: usize = 8;

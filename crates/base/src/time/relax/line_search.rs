@@ -2,7 +2,7 @@
 use super::super::control::Method;
 use super::newton::{put, shift, sweep_fields};
 use super::{Relax, START_CFL_MAX};
-use crate::math::sweep::{sweep, sweep_rows};
+use crate::math::parallel::{sweep, sweep_rows};
 use crate::system::{Implicit, Reach};
 
 /// Error of what the linear system foretold of the residual, over the residual before the step, below which the Courant number

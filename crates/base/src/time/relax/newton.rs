@@ -6,7 +6,8 @@
 use super::super::preconditioning::Preconditioning;
 use super::{Relax, TimeTerm};
 use crate::math::krylov::{Gmres, Goal, Numbers, System as Linear};
-use crate::math::sweep::{sum, sweep, sweep_rows};
+use crate::math::parallel::{sweep, sweep_rows};
+use crate::math::reduce::sum;
 use crate::system::{Implicit, Instant, Reach, RightHandSide, Shift, System, placed};
 
 /// Part of the fall that a step in time still needs which its next linear solve is asked for.
@@ -128,7 +129,7 @@ pub(super) fn shift<'a>((rates, cfl): (&'a [f64], f64), time: Option<&TimeTerm>,
 
 /// Brings a frame to where the state `u` puts it.
 pub(super) fn put<S: System>(system: &S, time: Option<&TimeTerm>, u: &[f64], frame: &mut S::Frame) {
-    let coordinates = &u[system.placing()];
+    let coordinates = &system.placing().values(u);
     match time {
         Some(term) => term.formula.at(coordinates, |at| system.place(at, frame)),
         None => system.place(&Instant::still(0.0).with(coordinates), frame),

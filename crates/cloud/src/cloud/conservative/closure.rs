@@ -11,7 +11,8 @@ use crate::cloud::Operators;
 use crate::cloud::coefficient_unknowns::{Kind, Link};
 use crate::math::Vector;
 use crate::math::conjugate::{Symmetric, conjugate_gradients};
-use crate::math::sweep::{sum, sweep};
+use crate::math::parallel::sweep;
+use crate::math::reduce::sum;
 
 /// Relative reduction of the defect in one round.
 const TOLERANCE: f64 = 1e-9;

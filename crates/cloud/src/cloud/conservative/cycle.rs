@@ -14,7 +14,7 @@ use super::levels::{Edge, Level, levels};
 use super::symmetry::Mirror;
 use crate::math::Vector;
 use crate::math::conjugate;
-use crate::math::sweep::{copy, sweep_chunks, sweep_slots};
+use crate::math::parallel::{copy, sweep_chunks, sweep_slots};
 
 /// Number of visits to the next coarser level.
 const VISITS: usize = 2;

@@ -9,7 +9,7 @@ use crate::cloud::coefficient_unknowns::{ITSELF, Kind, Link};
 use crate::cloud::multipliers::{Factors, Row, opposite, part_of};
 use crate::math::Vector;
 use crate::math::groups::Groups;
-use crate::math::sweep::{sweep, sweep_each};
+use crate::math::parallel::{sweep, sweep_each};
 
 /// Number of rows per group.
 const GROUP: usize = 8;

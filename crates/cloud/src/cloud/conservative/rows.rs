@@ -5,7 +5,7 @@ use super::Problem;
 use super::cycle::{Grid, Way};
 use crate::cloud::multipliers::{Row, opposite};
 use crate::math::conjugate::Row as _;
-use crate::math::sweep::{sweep, sweep_slots};
+use crate::math::parallel::{sweep, sweep_slots};
 
 impl<const D: usize> Grid<Row<D>> for Problem<'_, D> {
     #[inline(always)]

@@ -9,7 +9,8 @@ use std::collections::HashMap;
 use super::field::Field;
 use crate::cloud::Cloud;
 use crate::math::Vector;
-use crate::math::sweep::{sum, sweep};
+use crate::math::parallel::sweep;
+use crate::math::reduce::sum;
 
 /// Fraction of the smallest spacing within which two positions coincide.
 const SAME: f64 = 1e-6;

@@ -4,7 +4,7 @@ use crate::cloud::coefficient_unknowns::Link;
 use crate::cloud::multipliers::{Row, part_of};
 use crate::cloud::operators::WallFace;
 use crate::math::Vector;
-use crate::math::sweep::sweep_slots;
+use crate::math::parallel::sweep_slots;
 
 impl<const D: usize> Problem<'_, D> {
     /// Change of the area vector of a wall entry of row `i`: W Aᵀ λ.

@@ -3,8 +3,8 @@ use super::basis::{Axis, LIVE};
 use super::points::{FOUR, Point, Rays, of_surface};
 use super::{Body, HeldBox, Mirror, SplineModesError};
 use crate::math::Vector;
+use crate::math::parallel::sweep_each;
 use crate::math::sparse::{Factors, Symmetric};
-use crate::math::sweep::sweep_each;
 use crate::physics::solid::{MOST_HISTORY, Material, tangent_product, tensor};
 
 /// Number of splines that differ from zero in a cell.

@@ -17,7 +17,7 @@ mod tests;
 use crate::geometry::Surface;
 use crate::math::Vector;
 use crate::math::lanczos::start;
-use crate::math::sweep::dot;
+use crate::math::reduce::dot;
 use crate::math::symmetric;
 use crate::physics::solid::Material;
 use assembly::{Matrices, Space};

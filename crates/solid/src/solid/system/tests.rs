@@ -2,7 +2,7 @@
 use std::f64::consts::TAU;
 
 use super::super::body::{Action, Load, Parts, Solid};
-use super::super::modes::{Mode, Wanted, modes};
+use super::super::modes::{Mode, ModeRequest, modes};
 use super::super::tests::{cantilever, lattice, parts, rubber};
 use super::Structure;
 use crate::math::Vector;
@@ -25,7 +25,7 @@ fn plate(law: Law, held: impl Fn(&Vector<2>) -> bool) -> Parts<2> {
 
 fn first_mode(structure: &Structure<2>) -> Mode {
     let rest = structure.start(|_| [0.0; 2]);
-    modes(structure, &rest, &Wanted { count: 1, above: 0.0 }).unwrap().remove(0)
+    modes(structure, &rest, &ModeRequest { count: 1, above: 0.0 }).unwrap().remove(0)
 }
 
 #[test]
@@ -146,7 +146,7 @@ fn found(vibration: &mut Vibration<'_, Structure<2>>, u: Vec<f64>) -> Place {
 fn a_cantilever_answers_a_load_as_its_modes_do() {
     let undamped = cantilever(5, 0.0);
     let rest = undamped.start(|_| [0.0; 2]);
-    let all = modes(&undamped, &rest, &Wanted { count: 12, above: 0.0 }).unwrap();
+    let all = modes(&undamped, &rest, &ModeRequest { count: 12, above: 0.0 }).unwrap();
     let x = undamped.solid.particles.x.clone();
     let tip = x.iter().position(|x| (*x - Vector([0.2, 0.01])).norm() < 1e-9).unwrap();
     let first = all[0].omega;
