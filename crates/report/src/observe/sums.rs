@@ -145,8 +145,6 @@ mod tests {
         write_json(&path, &1.5).unwrap();
         check(at).unwrap();
         let before = fs::read(&path).unwrap();
-        write_json(&path, &2.5).unwrap();
-        check(at).unwrap();
         // a full disk cut a line short
         fs::write(at.join(FILE), fs::read_to_string(at.join(FILE)).unwrap() + "0123 a.js").unwrap();
         write_json(&path, &2.5).unwrap();
