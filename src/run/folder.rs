@@ -268,8 +268,8 @@ pub(crate) fn check_begun(out: &Path) -> Result<(), RunError> {
     if has_begun(out) {
         return check_files(out);
     }
-    if out.join(sums::FILE).is_file() {
-        sums::check(out)?;
+    if [MATRICES, BOUNDARY, sums::FILE].iter().any(|name| out.join(name).is_file()) {
+        check_files(out)?;
     }
     let (named, file) = (out.display(), saved::FILE);
     if out.join(MATRICES).exists() {

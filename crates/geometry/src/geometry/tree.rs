@@ -54,8 +54,16 @@ pub(super) struct Tree<const D: usize> {
     dipoles: Vec<Dipole<D>>,
     discs: Vec<Disc<D>>,
     bars: Vec<Bar<D>>,
+    /// Of each node a corner that all its elements share, as the triangles of a fan do.
+    apices: Vec<Option<Vector<D>>>,
     corners: Vec<Corners<D>>,
     order: Vec<u32>,
+}
+
+/// The corner that all elements share.
+fn apex<const D: usize>(elements: &[Corners<D>], items: &[(u32, Vector<D>)]) -> Option<Vector<D>> {
+    let first = &elements[items.first()?.0 as usize];
+    first.iter().copied().find(|x| items.iter().all(|i| elements[i.0 as usize].contains(x)))
 }
 
 /// Result of a search: element, barycentric weights, square of the distance.
@@ -75,6 +83,7 @@ impl<const D: usize> Tree<D> {
             dipoles: Vec::new(),
             discs: Vec::new(),
             bars: Vec::new(),
+            apices: Vec::new(),
             corners: Vec::new(),
             order: Vec::new(),
         };
@@ -93,6 +102,7 @@ impl<const D: usize> Tree<D> {
         let index = self.nodes.len();
         self.dipoles.push(Dipole::of(elements, items));
         let bar = self.bar_around(elements, items);
+        self.apices.push(apex(elements, items));
         self.nodes.push(Node { bounds, first: first as u32, count: items.len() as u32, right: 0, bar });
         if items.len() <= LEAF {
             return;
@@ -178,7 +188,7 @@ impl<const D: usize> Tree<D> {
             segment_meets_box(&middle, &half, &bounds)
         };
         self.visit(
-            |node| segment_meets_box(&middle, &half, &node.bounds) && self.bar(node).is_none_or(along),
+            |_, node| segment_meets_box(&middle, &half, &node.bounds) && self.bar(node).is_none_or(along),
             |_, corners| {
                 found = simplex::crosses(a, b, corners);
                 found
@@ -214,25 +224,29 @@ impl<const D: usize> Tree<D> {
 
     /// Calls `f(element, corners)` for elements whose leaf overlaps `bounds`, until it returns true.
     pub(super) fn overlapping(&self, bounds: &Bounds<D>, f: impl FnMut(u32, &Corners<D>) -> bool) {
-        self.visit(|node| meets(&node.bounds, bounds), f);
+        self.visit(|_, node| meets(&node.bounds, bounds), f);
     }
 
-    /// Calls `f(element, corners)` for elements that may meet the one with `corners`, until it returns true.
+    /// Calls `f(element, corners)` for elements that may meet the one with `corners`, until it returns true; many of those that share a corner with it
+    /// are passed over.
     pub(super) fn meeting(&self, corners: &Corners<D>, f: impl FnMut(u32, &Corners<D>) -> bool) {
         let bounds = simplex::bounds(corners);
-        let enter =
-            |node: &Node<D>| meets(&node.bounds, &bounds) && self.bar(node).is_none_or(|bar| !bar.misses(corners));
+        let enter = |index: u32, node: &Node<D>| {
+            meets(&node.bounds, &bounds)
+                && self.apices[index as usize].is_none_or(|apex| !corners.contains(&apex))
+                && self.bar(node).is_none_or(|bar| !bar.misses(corners))
+        };
         self.visit(enter, f);
     }
 
-    fn visit(&self, enter: impl Fn(&Node<D>) -> bool, mut f: impl FnMut(u32, &Corners<D>) -> bool) {
+    fn visit(&self, enter: impl Fn(u32, &Node<D>) -> bool, mut f: impl FnMut(u32, &Corners<D>) -> bool) {
         let mut stack = [0_u32; STACK];
         let mut depth = usize::from(!self.nodes.is_empty());
         while depth > 0 {
             depth -= 1;
             let index = stack[depth];
             let node = &self.nodes[index as usize];
-            if !enter(node) {
+            if !enter(index, node) {
                 continue;
             }
             if node.count == 0 {

@@ -419,6 +419,19 @@ fn product(shape: &[usize]) -> Option<usize> {
     shape.iter().try_fold(1_usize, |n, extent| n.checked_mul(*extent))
 }
 
+/// Checksum of the header that a file has, whatever it says of it itself; `None` where it ends early.
+pub(super) fn header_sum(file: File) -> io::Result<Option<u32>> {
+    let mut file = io::BufReader::new(file);
+    let mut head = Vec::new();
+    (&mut file).take(PREAMBLE as u64).read_to_end(&mut head)?;
+    if head.len() < PREAMBLE {
+        return Ok(None);
+    }
+    let (length, mut json) = (u64::from_le_bytes(integer(&head, 12)), Vec::new());
+    file.take(length).read_to_end(&mut json)?;
+    Ok((json.len() as u64 == length).then(|| header_crc(&head[8..20], &json)))
+}
+
 fn header_crc(preamble: &[u8], json: &[u8]) -> u32 {
     let mut crc = crc32fast::Hasher::new();
     crc.update(preamble);

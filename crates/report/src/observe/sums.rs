@@ -5,9 +5,10 @@
 //! by row has the sum `-` while it does: the checkpoint says what it held. The sum is the CRC-32 of the file; of a checkpoint that of its header, which
 //! has those of its fields, and each that a run wrote counts, since a machine that stops may leave the one before the last.
 use std::fs::{File, OpenOptions};
-use std::io::{Read, Write};
+use std::io::Write;
 use std::path::Path;
 
+use super::checkpoint::header_sum;
 use super::table::{FileError, folder_of, write_plain};
 use crate::case::{open_regular, read_regular};
 
@@ -18,8 +19,8 @@ const LISTED: [&str; 3] = ["csv", "json", "alula"];
 const CLOUD: &str = "cloud.toml";
 /// The sum of a table that grows.
 const GROWING: &str = "-";
-/// Where the checksum of a checkpoint's header stands.
-const HEADER_SUM: std::ops::Range<usize> = 20..24;
+/// The sum of a checkpoint that ends within its header.
+const BROKEN: &str = "broken";
 
 /// Begins the list of a folder, in which there is nothing yet that counts.
 pub fn begin(folder: &Path) -> Result<(), FileError> {
@@ -38,7 +39,8 @@ pub(super) fn announce(target: &Path, file: Option<&Path>) -> Result<(), FileErr
         Some(file) => sum_of(name, file)?,
         None => GROWING.to_owned(),
     };
-    let add = |mut list: File| list.write_all(format!("{sum} {name}\n").as_bytes());
+    // a line that a full disk cut short is ended first
+    let add = |mut list: File| list.write_all(format!("\n{sum} {name}\n").as_bytes());
     OpenOptions::new().append(true).open(&list).and_then(add).map_err(FileError::io("append to", &list))
 }
 
@@ -123,10 +125,8 @@ fn sum_of(name: &str, file: &Path) -> Result<String, FileError> {
     if !is_checkpoint(name) {
         return Ok(format!("{:08x}", crc32fast::hash(&read_regular(file).map_err(failed)?)));
     }
-    let mut head = Vec::new();
-    open_regular(file).and_then(|f| f.take(HEADER_SUM.end as u64).read_to_end(&mut head)).map_err(failed)?;
-    let sum = head.get(HEADER_SUM).and_then(|b| b.try_into().ok()).map_or(0, u32::from_le_bytes);
-    Ok(format!("{sum:08x}"))
+    let sum = open_regular(file).and_then(header_sum).map_err(failed)?;
+    Ok(sum.map_or_else(|| BROKEN.to_owned(), |sum| format!("{sum:08x}")))
 }
 
 #[cfg(test)]
@@ -145,6 +145,8 @@ mod tests {
         write_json(&path, &1.5).unwrap();
         check(at).unwrap();
         let before = fs::read(&path).unwrap();
+        // a full disk cut a line short
+        fs::write(at.join(FILE), fs::read_to_string(at.join(FILE)).unwrap() + "0123 a.js").unwrap();
         write_json(&path, &2.5).unwrap();
         check(at).unwrap();
         // killed between the line and the name
