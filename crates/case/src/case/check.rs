@@ -435,9 +435,7 @@ fn accuracy_in_time(draft: &mut Draft<'_>) {
         ("accuracy.time", draft.get("accuracy.time").is_some_and(|t| !t.is_null())),
     ];
     for (key, _) in of_steady.into_iter().filter(|(_, given)| *given) {
-        draft
-            .fail_key(key, format!("`{key}` is for steady cases"))
-            .hint("leave it out; for marches and harmonic balances give `error` only");
+        draft.fail_key(key, format!("`{key}` is for steady cases")).hint("leave it out; give `error` only");
     }
     let (own, theirs) = if balance { ("harmonics", "step") } else { ("step", "harmonics") };
     if error == theirs {
