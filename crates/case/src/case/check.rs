@@ -126,7 +126,7 @@ fn wing(draft: &mut Draft<'_>, path: &str) {
         if count < least {
             draft.fail_key(path, "a wing has no section").hint("add `naca = \"0012\"` or `airfoil = \"FILE\"`");
         } else if count > 1 {
-            let message = format!("a wing has two sections at one place, `{}` and `{}`", keys[0], keys[1]);
+            let message = format!("a wing has two sections at the same end, `{}` and `{}`", keys[0], keys[1]);
             draft.fail_key(&format!("{path}.{}", keys[1]), message).hint("keep one of them");
         }
         naca(draft, &format!("{path}.{}", keys[0]));
@@ -155,7 +155,7 @@ fn profile(draft: &mut Draft<'_>, path: &str) {
         (format!("points {i} and {} of the profile are the same", i + 1), "remove one of them")
     } else if let Some(i) = crossing {
         let hint = "radii are positive; only the first and the last point may be on the axis";
-        (format!("point {} of the profile is not outside the axis", i + 1), hint)
+        (format!("point {} of the profile does not have a positive radius", i + 1), hint)
     } else if 1 < n && at(n - 1, 0) <= at(0, 0) {
         ("the profile has no length".to_owned(), "list points `[x, r]` from the nose to the rear")
     } else if (0..n).all(|i| at(i, 1) == 0.0) {
@@ -177,10 +177,10 @@ fn stations(draft: &mut Draft<'_>, path: &str) {
     let (message, hint) = if let Some(i) = back {
         (format!("station {} of the loft does not lie behind the one before", i + 1), "list stations by growing x")
     } else if let Some(i) = flat {
-        let hint = "widths and heights are positive; only the first and the last station may have none of both";
-        (format!("station {} of the loft encloses nothing", i + 1), hint)
+        let hint = "widths and heights must be positive; only the first and the last station may be a point";
+        (format!("station {} of the loft has no area", i + 1), hint)
     } else if (0..n).all(empty) {
-        ("the loft encloses nothing".to_owned(), "give a station with width and height between its ends")
+        ("the loft has no volume".to_owned(), "give a station with width and height between its ends")
     } else {
         return;
     };
@@ -242,7 +242,7 @@ fn free_stream(draft: &mut Draft<'_>) {
         let message = "`isentropic` and viscosity contradict each other";
         draft
             .fail_key("flow.isentropic", message)
-            .hint("friction and conduction of heat make entropy: keep one of the two");
+            .hint("friction and heat conduction produce entropy: remove one of the two");
     }
     let (mach, velocity) = (draft.given("flow.mach"), draft.given("flow.velocity"));
     if mach && velocity {
@@ -339,7 +339,7 @@ fn hinge_line(draft: &mut Draft<'_>, from: &str, to: &str) {
     let (x, y, z): (f64, f64, f64) = (p - a, q - b, r - c);
     let across = y.hypot(z);
     if across < ALONG_STREAM * x.hypot(across) || across == 0.0 {
-        let hint = "what lies behind a line is told by its direction across x: move one of its ends";
+        let hint = "the control surface lies behind the line along x, so the line must not be parallel to x: move one of its ends";
         draft.fail(to, "the hinge line runs along the stream or has no length").hint(hint);
     }
 }
@@ -402,7 +402,7 @@ fn accuracy(draft: &mut Draft<'_>, dimension: usize) {
         }
     }
     if !draft.given("body") {
-        draft.fail_key("accuracy", "`[accuracy]` is of loads, and there is no body").hint("remove it");
+        draft.fail_key("accuracy", "`[accuracy]` concerns loads, but the case has no body").hint("remove it");
     }
     accuracy_in_time(draft);
 }
@@ -421,7 +421,7 @@ fn accuracy_in_time(draft: &mut Draft<'_>) {
         return;
     }
     if !draft.given("accuracy.error") || structure {
-        let hint = "remove it, or `[time]`; `accuracy.error` tells the errors of a march or a harmonic balance";
+        let hint = "remove it, or `[time]`; for marches and harmonic balances give `accuracy.error`";
         draft.fail_key("accuracy", "`[accuracy]` is for steady cases").hint(hint);
         return;
     }
@@ -435,13 +435,13 @@ fn accuracy_in_time(draft: &mut Draft<'_>) {
         ("accuracy.time", draft.get("accuracy.time").is_some_and(|t| !t.is_null())),
     ];
     for (key, _) in of_steady.into_iter().filter(|(_, given)| *given) {
-        draft.fail_key(key, format!("`{key}` is for steady cases")).hint("leave it out; `error` alone is for others");
+        draft.fail_key(key, format!("`{key}` is for steady cases")).hint("leave it out; give `error` only");
     }
     let (own, theirs) = if balance { ("harmonics", "step") } else { ("step", "harmonics") };
     if error == theirs {
         let what =
             if balance { "a harmonic balance has no step in time" } else { "a march has no number of harmonics" };
-        let hint = format!("write `error = \"{own}\"`, or \"all\" for that of the cloud as well");
+        let hint = format!("write `error = \"{own}\"`, or \"all\" to include the error of the cloud");
         draft.fail("accuracy.error", format!("`accuracy.error = \"{theirs}\"`, but {what}")).hint(hint);
     }
 }
@@ -457,7 +457,7 @@ fn domain(draft: &mut Draft<'_>) {
         draft.fail_key("cloud.wall_layers", "`cloud.wall_layers` needs a body").hint("layers lie along its surface");
     }
     if !draft.given("body") && draft.given("cloud.wake") {
-        draft.fail_key("cloud.wake", "`cloud.wake` needs a body").hint("use `cloud.box` to refine a place");
+        draft.fail_key("cloud.wake", "`cloud.wake` needs a body").hint("use `cloud.box` to refine a region");
     }
     let (Some(min), Some(max)) = (draft.numbers("cloud.domain.min"), draft.numbers("cloud.domain.max")) else { return };
     let Some(spacing) = draft.number("cloud.spacing") else { return };
@@ -479,7 +479,7 @@ fn initial(draft: &mut Draft<'_>, d: usize) {
     let own =
         ["initial.vortex", "initial.ringleb"].iter().any(|k| draft.get(k).is_some()) || is(draft, "initial", "ringleb");
     if own && is_dimensional(draft) {
-        let message = "this field has units of its own, density and pressure or sound speed 1, but the free stream is dimensional";
+        let message = "this initial field is nondimensional (density and pressure, or sound speed, are 1), but the free stream is dimensional";
         draft.fail("initial", message).hint("give `[flow]` by `mach` alone");
     }
     if let Some(axis) = draft.number("initial.riemann.axis").filter(|&a| a >= d as f64) {
@@ -521,7 +521,7 @@ fn one_side(draft: &mut Draft<'_>, side: &str, axis: usize, d: usize) {
         let placed = draft.given("cloud.domain") || (kind == "symmetry" && draft.given("body"));
         if is(draft, side, kind) && !placed {
             let hint = "add `domain = { min = [...], max = [...] }` to `[cloud]`";
-            draft.fail(side, format!("a {kind} side needs `cloud.domain`: it must lie at a definite place")).hint(hint);
+            draft.fail(side, format!("a {kind} side needs `cloud.domain`, which fixes its position")).hint(hint);
         }
     }
     // The stream must run along a plane of symmetry; x sides are walls for the stream on purpose (impulsive start).

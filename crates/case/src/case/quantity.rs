@@ -53,7 +53,7 @@ pub enum QuantityError {
         text: String,
     },
     /// The unit is unknown.
-    #[error("`{unit}` is no unit of {dimension}; allowed: {allowed}")]
+    #[error("`{unit}` is not a unit of {dimension}; allowed: {allowed}")]
     Unit {
         /// The text after the number.
         unit: String,
@@ -352,7 +352,7 @@ mod tests {
     #[test]
     fn wrong_units_list_the_allowed_ones() {
         let error = "20 minutes".parse::<Time>().unwrap_err();
-        assert_eq!(error.to_string(), "`minutes` is no unit of a time; allowed: s, ms, us, min, h");
+        assert_eq!(error.to_string(), "`minutes` is not a unit of a time; allowed: s, ms, us, min, h");
         assert!("fast".parse::<Velocity>().is_err());
         assert!("1e999 m".parse::<Length>().is_err());
         assert!("".parse::<Length>().is_err());

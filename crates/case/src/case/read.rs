@@ -406,7 +406,7 @@ impl Reader<'_> {
             let message = format!("`{path}` has two alternatives: `{}` and `{}`", chosen[0].0.name, second.name);
             self.draft.fail_at(path, span.clone(), message).allowed(format!("one of {}", one_of(names.into_iter())));
         } else if document.is_empty() {
-            let message = format!("`{path}` says nothing");
+            let message = format!("`{path}` is an empty table");
             self.draft.fail_at(path, whole.span(), message).allowed(one_of(names.into_iter()));
         }
         chosen.into_iter().next()?.2

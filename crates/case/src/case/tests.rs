@@ -76,7 +76,7 @@ fn fields_at_the_start_are_read() {
     for field in ["vortex = { strength = 5, centre = [0, 0], velocity = [1, 0] }", "ringleb = {}"] {
         let text = open(&format!("[initial]\n{field}")).replace("[flow]\nmach = 0.5", air);
         assert!(text.contains("101325"));
-        assert_shows(&text, &["this field has units of its own"]);
+        assert_shows(&text, &["this initial field is nondimensional"]);
     }
     let tube = "initial.riemann = { left = [1, 0, 1], right = [0.125, 0, 0.1] }\n[cloud]\nspacing = 0.01\n\
                 domain = { min = [0, 0], max = [1, 0.1] }\n[boundary]\nx_min = \"held\"\nx_max = \"outflow\"\n\
@@ -368,7 +368,7 @@ fn wings_and_profiles_that_cannot_be_are_told() {
     assert!(read(&body("wing = { naca = \"0012\", span = 8, chord = 1 }"), "t").is_ok());
     for (shape, told) in [
         ("wing = { span = 8, chord = 1 }", "a wing has no section"),
-        ("wing = { naca = \"0012\", airfoil = \"a.dat\", span = 8, chord = 1 }", "two sections at one place"),
+        ("wing = { naca = \"0012\", airfoil = \"a.dat\", span = 8, chord = 1 }", "two sections at the same end"),
         ("wing = { naca = \"0012\", span = 8 }", "a wing has no chord"),
         ("wing = { naca = \"0012\", span = 8, chord = 1, aspect_ratio = 8 }", "both a chord and an aspect ratio"),
         ("wing = { naca = \"9912x\", span = 8, chord = 1 }", "9912x"),
@@ -376,10 +376,10 @@ fn wings_and_profiles_that_cannot_be_are_told() {
         ("revolution = [[0, 0], [1, 0]]", "the profile runs along the axis"),
         ("revolution = [[0, 0], [2, 0.5], [1, 0.5], [3, 0]]", "lies ahead of the one before"),
         ("revolution = [[0, 0], [1, 0.5], [1, 0.5], [3, 0]]", "are the same"),
-        ("revolution = [[0, 0], [1, 0], [3, 1]]", "is not outside the axis"),
+        ("revolution = [[0, 0], [1, 0], [3, 1]]", "does not have a positive radius"),
         ("loft = [[0, 0, 0], [2, 1, 1], [1, 1, 1], [3, 0, 0]]", "station 3 of the loft does not lie behind"),
-        ("loft = [[0, 0, 0], [1, 1, 0], [3, 1, 1]]", "station 2 of the loft encloses nothing"),
-        ("loft = [[0, 0, 0], [1, 0, 0]]", "the loft encloses nothing"),
+        ("loft = [[0, 0, 0], [1, 1, 0], [3, 1, 1]]", "station 2 of the loft has no area"),
+        ("loft = [[0, 0, 0], [1, 0, 0]]", "the loft has no volume"),
     ] {
         assert_shows(&body(shape), &[told]);
     }

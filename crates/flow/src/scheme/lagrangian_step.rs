@@ -1,4 +1,4 @@
-//! Where particles that travel with the fluid go in a step.
+//! Velocities of Lagrangian particles for a time step.
 //!
 //! *Regularisation.* δ is the Fickian shift of Lind, Xu, Stansby and Rogers (2012, J. Comput. Phys. 231, eqs 21-26), down
 //! the gradient of the concentration of particles, as a velocity (Sun, Colagrossi, Marrone and Zhang 2017, CMAME 315):
@@ -9,11 +9,11 @@
 //! q₀ = 1/ρ is the place of a neighbour one spacing away, R = 0.2 keeps pairs apart (Monaghan 2000). It vanishes on even
 //! clouds and is never faster than 0.2 c, nor, where the length of the step is known beforehand, farther than 0.1 h in a step.
 //!
-//! *Shocks.* The flux past a particle is taken with its own velocity, which makes linear fields exact; where w and U jump
-//! together, what one particle loses another does not gain: Σ (w_ij − w_i)·s_ij (U_i − U_ij) is left over, and a shock
-//! runs at a wrong speed (3 % in Sod's tube). Particles therefore keep the velocity of their last step, and are not shifted,
-//! while the gas around them is compressed at a rate −h ∇·v > 0.1 c, or has been three neighbours away: w jumps behind
-//! the shock, where U no longer does, and the shock stays within a fraction of a spacing.
+//! *Shocks.* The flux relative to a particle uses its own velocity, which makes linear fields exact. Where w and U jump
+//! together, the scheme is then not conservative: the sum Σ (w_ij − w_i)·s_ij (U_i − U_ij) remains, and shocks have a
+//! wrong speed (3 % in Sod's tube). Particles therefore keep the velocity of their last step, without a shift, while
+//! the gas around them, up to three neighbours away, is or was compressed at a rate −h ∇·v > 0.1 c. w then jumps behind
+//! the shock, where U no longer does, and the position of the shock is accurate to a fraction of a spacing.
 use std::sync::Arc;
 
 use super::discretisation::CloudMotion;
@@ -26,25 +26,26 @@ use crate::math::parallel::{sweep, sweep_each, sweep_parts};
 use crate::math::reduce::{first, maximum};
 use crate::physics::{Gas, Primitive};
 
-/// Strength A of the shift.
+/// Coefficient A of the shift.
 const STRENGTH: f64 = 0.1;
-/// Greatest shift velocity over the sound speed.
+/// Greatest shift velocity divided by the sound speed.
 const FASTEST: f64 = 0.2;
 /// Greatest shift in a step, in spacings.
 const FARTHEST: f64 = 0.1;
-/// Strength R of the term that keeps pairs apart.
+/// Coefficient R of the term that prevents pairing of particles.
 const APART: f64 = 0.2;
-/// Share of an interface particle in the concentration: the gas reaches around it on one side only.
+/// Weight of an interface particle in the concentration; the gas surrounds it on one side only.
 const WALL_SHARE: f64 = 0.5;
-/// Rate −h ∇·v/c of compression above which there is a shock.
+/// Compression rate −h ∇·v/c above which there is a shock.
 const COMPRESSED: f64 = 0.1;
-/// Neighbours of neighbours, that many times, that are near a shock as well.
+/// Number of times that the region near a shock is extended to neighbours.
 const HOPS: usize = 3;
-/// Part of the distance between two particles by which they may move relative to one another in a step.
+/// Fraction of the distance between two particles by which they may move relative to each other in a step.
 const REACH: f64 = 0.5;
 
 impl<const D: usize> Fluid<D> {
-    /// Chooses where particles go in the step that begins and is meant to last `step`; the longest step they can take.
+    /// Chooses the particle velocities for the step that starts, whose intended length is `step`; returns the greatest
+    /// permitted step.
     pub(super) fn choose_ways(&self, step: f64, u: &[f64], work: &mut Work<D>, frame: &mut Frame<D>) -> f64 {
         self.fill_states(frame, u, work);
         let cloud = &frame.discretisation.cloud;
@@ -78,8 +79,8 @@ impl<const D: usize> Fluid<D> {
     }
 }
 
-/// The time in which no two particles that see one another move relative to one another by more than the part [`REACH`] of
-/// their distance.
+/// Time after which the first pair of neighbours has moved relative to each other by the fraction [`REACH`] of their
+/// distance.
 fn reach<const D: usize>(discretisation: &Discretisation<D>, velocity: &[Vector<D>]) -> f64 {
     let (x, op) = (&discretisation.cloud.x, &discretisation.operators);
     let mut fastest = vec![0.0; op.fluid_parts().len()];
@@ -93,13 +94,13 @@ fn reach<const D: usize>(discretisation: &Discretisation<D>, velocity: &[Vector<
 /// Sums over the neighbours of a particle.
 #[derive(Clone, Copy)]
 struct Around<const D: usize> {
-    /// −Σ_j ω_j f(q_ij) d_ij/|d_ij|: away from where particles are dense.
+    /// −Σ_j ω_j f(q_ij) d_ij/|d_ij|, which points away from high concentrations of particles.
     shift: Vector<D>,
-    /// Σ_j (v_i − v_j)·d_ij/|d_ij|².
+    /// Σ_j (v_i − v_j)·d_ij/|d_ij|², a measure of compression.
     approach: f64,
 }
 
-/// What particles find around them; the two ends of an edge find the same, or its opposite.
+/// These sums for all particles; the contributions to the two ends of an edge are equal or opposite.
 fn around<const D: usize>(discretisation: &Discretisation<D>, state: &[Primitive<D>], radius: f64) -> Vec<Around<D>> {
     let (cloud, op) = (&discretisation.cloud, &discretisation.operators);
     let blank = Around { shift: Vector::ZERO, approach: 0.0 };
@@ -129,7 +130,7 @@ fn around<const D: usize>(discretisation: &Discretisation<D>, state: &[Primitive
     all
 }
 
-/// f(q) of the shift.
+/// The function f(q) of the shift.
 struct Crowding {
     radius: f64,
     kernel_scale: f64,
@@ -150,7 +151,7 @@ impl Crowding {
         q * (1.0 - q).powi(3)
     }
 
-    /// f at a distance of `r` mean spacings.
+    /// Value of f at the distance of `r` mean spacings.
     #[inline(always)]
     fn at(&self, r: f64) -> f64 {
         let q = (r / self.radius).min(1.0);
@@ -159,7 +160,7 @@ impl Crowding {
     }
 }
 
-/// True for particles near a shock: where the gas is compressed hard, and a few neighbours around; empty when there is none.
+/// True for particles near a shock: where the gas is strongly compressed, and around it; empty when there is no shock.
 fn shocked<const D: usize>(cloud: &Cloud<D>, gas: &Gas, (state, around): (&[Primitive<D>], &[Around<D>])) -> Vec<bool> {
     let n = cloud.n_fluid;
     let compressed = |i: usize| {

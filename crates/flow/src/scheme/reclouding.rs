@@ -1,8 +1,8 @@
-//! A cloud of travelling particles built anew.
+//! Rebuilding the cloud of Lagrangian particles.
 //!
-//! *Re-clouding.* The lists of neighbours serve until two particles that see one another have moved apart or together by a
-//! quarter of their spacing, or a row of the cloud gets sick. Then the cloud is built anew where the particles are
-//! ([`crate::cloud::travel`]), and `transfer` takes the state over.
+//! The neighbour lists remain valid until the distance of two neighbours has changed by a quarter of their spacing, or
+//! a row becomes insufficient. Then the cloud is rebuilt around the particles ([`crate::cloud::travel`]), and the state
+//! is transferred (`transfer`).
 use std::sync::Arc;
 
 use super::discretisation::CloudMotion;
@@ -16,21 +16,21 @@ use crate::math::Vector;
 use crate::math::parallel::sweep_each;
 use crate::math::reduce::{first, maximum};
 
-/// Distance, in mean spacings, by which neighbours may move relative to one another before lists are made anew.
+/// Relative displacement of neighbours, in mean spacings, after which the neighbour lists are rebuilt.
 const SLACK: f64 = 0.25;
 
-/// A fluid on its renewed cloud, with its state.
+/// The flow equations on a rebuilt cloud, with the state.
 pub struct Reclouded<const D: usize> {
-    /// Equations.
+    /// The flow equations.
     pub fluid: Fluid<D>,
-    /// State.
+    /// State on the rebuilt cloud.
     pub u: Vec<f64>,
-    /// States one and two steps ago, as far as they were known.
+    /// States one and two time steps ago, if they were known.
     pub past: [Vec<f64>; 2],
 }
 
 impl<const D: usize> Fluid<D> {
-    /// True when the cloud should be built anew: lists no longer hold what is near, or a row is sick.
+    /// True when the cloud should be rebuilt: its neighbour lists are no longer valid, or a row is insufficient.
     pub fn is_worn(&self, frame: &Frame<D>) -> bool {
         if !matches!(self.cloud_motion, CloudMotion::Travel(_)) {
             return false;
@@ -41,7 +41,7 @@ impl<const D: usize> Fluid<D> {
             !well && then.first_order.binary_search(&(i as u32)).is_err()
         };
         let operators = &self.discretisation.operators;
-        // a cloud just built is as good as it gets
+        // a cloud that was just built needs no rebuild
         let moved = |i: usize| f64::from(u8::from(now.x[i] != then.x[i]));
         let mut apart = vec![false; operators.fluid_parts().len()];
         sweep_each(&mut apart, |k| {
@@ -49,14 +49,14 @@ impl<const D: usize> Fluid<D> {
                 let (i, j) = (e.i(), e.j());
                 let d = (now.x[j] - now.x[i]) - (then.x[j] - then.x[i]);
                 let slack = 0.5 * SLACK * (then.spacing[i] + then.spacing[j]);
-                // positions that are no numbers count as apart
+                // written so that positions that are NaN count as moved
                 !(d.norm_squared() <= slack * slack)
             })
         });
         apart.contains(&true) || first(then.n_fluid, sick).is_some() && maximum(then.n_fluid, moved) > 0.0
     }
 
-    /// The same equations on a cloud built anew where particles are in `frame`, and the state `u` on it.
+    /// The flow equations on a cloud rebuilt around the particles of `frame`, with the state `u` transferred to it.
     pub fn reclouded(
         &self,
         frame: &Frame<D>,
@@ -81,9 +81,9 @@ impl<const D: usize> Fluid<D> {
         Ok(Some(Reclouded { fluid, u: state, past }))
     }
 
-    /// The same equations on a cloud whose lists are those of the fluid particles at `lists` at time `since`, or on this cloud
-    /// without them, while fluid and interface particles are at certain places now and went there with certain velocities:
-    /// what a checkpoint keeps.
+    /// The flow equations restored from a checkpoint. The neighbour lists are those of the fluid particles at the
+    /// positions and time `lists`, or those of this cloud without them; `kinematics` are the present positions and
+    /// velocities of the fluid and interface particles.
     pub fn resumed(
         &self,
         lists: Option<(&[Vector<D>], f64)>,
@@ -95,7 +95,7 @@ impl<const D: usize> Fluid<D> {
         Ok(Some(self.on(cloud, since, kinematics)))
     }
 
-    /// Time at which this system takes over from the one before.
+    /// Time from which these equations replace the previous ones.
     pub fn stood(&self) -> f64 {
         match &self.cloud_motion {
             CloudMotion::Travel(travel) => travel.kinematics.now,
@@ -103,7 +103,7 @@ impl<const D: usize> Fluid<D> {
         }
     }
 
-    /// Interface particles before any motion.
+    /// Positions of the interface particles before any motion.
     pub fn walls_before(&self) -> &[Vector<D>] {
         match &self.cloud_motion {
             CloudMotion::Travel(travel) => travel.domain.walls().0,
@@ -114,12 +114,12 @@ impl<const D: usize> Fluid<D> {
         }
     }
 
-    /// Volumes for totals and means: where particles travel, the part of the domain that is nearest to each.
+    /// Volumes for totals and means; for Lagrangian particles, the part of the domain nearest to each.
     pub fn volumes(&self) -> Vec<f64> {
         self.volumes_of(&self.discretisation.cloud)
     }
 
-    /// The same of particles that stand as in `cloud`.
+    /// These volumes for the particles of `cloud`.
     pub(super) fn volumes_of(&self, cloud: &Cloud<D>) -> Vec<f64> {
         match &self.cloud_motion {
             CloudMotion::Travel(travel) => travel.domain.volumes(&travel.poses(travel.since), cloud),
@@ -127,7 +127,7 @@ impl<const D: usize> Fluid<D> {
         }
     }
 
-    /// Writes these volumes into the cloud, for those who look at it when the march is over.
+    /// Stores these volumes in the cloud, for evaluation after the march.
     pub fn measure(&mut self) {
         let volumes = self.volumes();
         let n = volumes.len();
@@ -145,7 +145,7 @@ impl<const D: usize> Fluid<D> {
         other
     }
 
-    /// The same equations on the same cloud, with the particles elsewhere.
+    /// The same equations and neighbour lists with the particles at other positions.
     fn moved(&self, kinematics: ParticleKinematics<D>) -> Self {
         let CloudMotion::Travel(travel) = &self.cloud_motion else { return self.copy() };
         Self {

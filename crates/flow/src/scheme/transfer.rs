@@ -7,9 +7,8 @@
 //! particle, is recorded.
 //!
 //! *History.* The velocity of a new particle is a linear fit of the velocities of its neighbours. Its state some steps
-//! ago is its present
-//! state minus the same fit of their changes: U(t − Δt) at x − w Δt, so that a linear field at rest is preserved by a
-//! difference formula of any number of time levels.
+//! ago is its present state minus the same fit of their changes: U(t − Δt) at x − w Δt, so that a linear field at rest
+//! is preserved by a difference formula of any number of time levels.
 use super::fluid::{Fluid, Work};
 use crate::cloud::travel::{NEW, Recloud};
 use crate::cloud::{Cloud, CloudError};

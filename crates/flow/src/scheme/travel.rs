@@ -1,10 +1,11 @@
-//! Particles that travel with the fluid.
+//! Lagrangian particles, which travel with the fluid.
 //!
-//! In a step every particle goes straight, with w_i = v_i + δ_i chosen from the state at its start. Positions and state then
-//! follow the same formula, so that whatever w is, uniform flow and linear fields at rest are kept to round-off; how closely
-//! w follows the gas decides nothing but how little is advected past the particles.
+//! During a time step, every particle moves along a straight line with the velocity w_i = v_i + δ_i, chosen from the
+//! state at the start of the step. Positions and state are advanced by the same formula. Uniform flow and linear fields
+//! at rest are therefore preserved to round-off for any w; the closer w is to the gas velocity, the less is advected
+//! relative to the particles.
 //!
-//! Where they go is chosen in `lagrangian_step`; a cloud that has worn out is built anew in `reclouding`.
+//! The velocities are chosen in `lagrangian_step`; the cloud is rebuilt in `reclouding`.
 use std::sync::Arc;
 
 use super::frame::{Discretisation, Frame, LagrangianStep};
@@ -18,29 +19,29 @@ use crate::math::reduce::maximum;
 use crate::motion::{BodyMotion, RigidPose};
 use crate::system::{Instant, Rate, Term};
 
-/// How particles travel with the fluid.
+/// Data of Lagrangian particles.
 #[derive(Clone)]
 pub struct Travel<const D: usize> {
-    /// What the cloud keeps.
+    /// Background, sides and bodies, which do not change.
     pub domain: Arc<BackgroundDomain<D>>,
     /// Motion of each body.
     pub laws: Vec<BodyMotion<D>>,
-    /// Where particles are when this system takes over.
+    /// Positions and velocities of the particles at the start of this system.
     pub kinematics: Arc<ParticleKinematics<D>>,
     /// Time at which the cloud was built.
     pub since: f64,
 }
 
-/// Where particles that travel are, and how they came there.
+/// Positions and velocities of Lagrangian particles at one time.
 #[derive(Clone, Debug, Default)]
 pub struct ParticleKinematics<const D: usize> {
-    /// Time.
+    /// Time of the positions.
     pub now: f64,
-    /// Places of fluid and interface particles.
+    /// Positions of fluid and interface particles.
     pub places: Vec<Vector<D>>,
-    /// Their velocities, by the formula that serves the state; empty at the start.
+    /// Their velocities by the same difference formula as for the state; empty at the start.
     pub velocity: Vec<Vector<D>>,
-    /// The straight course of fluid particles in the step before; empty at the start.
+    /// Straight-line velocities of the fluid particles in the previous step; empty at the start.
     pub course: Vec<Vector<D>>,
 }
 
@@ -50,12 +51,13 @@ impl<const D: usize> Travel<D> {
         self.laws.iter().map(|l| l.pose(t)).collect()
     }
 
-    /// Brings `frame` to a moment. Fluid particles go from where the step began with the velocities they then chose.
+    /// Sets `frame` to a time: the fluid particles move from their positions at the start of the step with the chosen
+    /// velocities.
     pub(super) fn place(&self, origin: &Arc<Discretisation<D>>, at: &Instant<'_>, frame: &mut Frame<D>) {
         let cloud = &origin.cloud;
         let (n, kinematics) = (cloud.n_fluid, &self.kinematics);
         if frame.lagrangian_step.base.len() != n {
-            // to the bit what the system before, or a checkpoint, left
+            // the same bits as in the previous system or in a checkpoint
             let (base, course) = (Arc::new(kinematics.places[..n].to_vec()), Arc::new(kinematics.course.clone()));
             frame.lagrangian_step = LagrangianStep { since: kinematics.now, base, course, ..LagrangianStep::default() };
             frame.time = kinematics.now;
@@ -86,7 +88,7 @@ impl<const D: usize> Travel<D> {
             false => discretisation.cloud.x[n..kinematics.places.len()].copy_from_slice(&kinematics.places[n..]),
         }
         if back {
-            // as if the step had never begun
+            // as before the start of the step
             *velocity = (*frame.lagrangian_step.velocity).clone();
             (frame.lagrangian_step.off, frame.lagrangian_step.course) =
                 (false, Arc::clone(&frame.lagrangian_step.before));
@@ -106,7 +108,7 @@ impl<const D: usize> Travel<D> {
         discretisation.walls = WallFits::new(&discretisation.cloud);
     }
 
-    /// Interface particles stay on their bodies.
+    /// Moves the interface particles with their bodies.
     fn place_walls(&self, at: &Instant<'_>, cloud: &mut Cloud<D>, velocity: &mut [Vector<D>]) {
         let (before, interface) = self.domain.walls();
         if self.laws.iter().all(BodyMotion::is_fixed) {
@@ -130,7 +132,7 @@ impl<const D: usize> Travel<D> {
         }
     }
 
-    /// Surface vectors, spin and acceleration of the walls at time `t`.
+    /// Sets area vectors, rotation and acceleration of the walls at time `t`.
     fn turn_walls(&self, t: f64, frame: &mut Frame<D>) {
         let (before, interface) = self.domain.walls();
         let walls = Arc::make_mut(&mut frame.walls);
@@ -152,7 +154,7 @@ impl<const D: usize> Travel<D> {
     }
 }
 
-/// Velocities of a difference formula for particles that went straight, in this step and in the one before.
+/// Velocities by a difference formula for particles on straight lines in this step and in the previous one.
 fn differentiate<const D: usize>(lagrangian_step: &LagrangianStep<D>, rate: &[Term<'_>], velocity: &mut [Vector<D>]) {
     let passed = |k: usize| rate[k - 1].time - rate[k].time;
     let now = rate[0].coefficient * passed(1);
@@ -166,7 +168,7 @@ fn differentiate<const D: usize>(lagrangian_step: &LagrangianStep<D>, rate: &[Te
     }
 }
 
-/// Brings images to the velocities of their sources.
+/// Sets the velocities of ghosts from those of their sources.
 pub(super) fn set_ghost_velocities<const D: usize>(cloud: &Cloud<D>, velocity: &mut [Vector<D>]) {
     let (own, ghosts) = velocity.split_at_mut(cloud.n_real());
     sweep(ghosts, |k| {

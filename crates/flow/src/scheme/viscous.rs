@@ -11,12 +11,11 @@
 //! a_ij·[F_v − F_v(g_i)]. Both vanish in uniform flow and for uniform stress.
 //!
 //! *No-slip walls.* The velocity of an interface particle is that of the wall, its pressure follows from ∂p/∂n = −ρ
-//! n·a_w, and its
-//! temperature from ∂θ/∂n = 0 or is given (`wall_state`). The stress on the wall is that of the slope ∂v/∂n = (Δv₁
-//! η₂/η₁ − Δv₂ η₁/η₂)/(η₂ − η₁), a parabola through the wall and two layers at the heights η; without layers, it is
-//! that of the normal part of the gradient of the interface particle. Along the wall, the gas rotates with it: ∇v = n
-//! ∂v/∂n + G (I − nn) with the rate of rotation G of the wall, so that rotation together with the wall causes no
-//! stress.
+//! n·a_w, and its temperature from ∂θ/∂n = 0 or is given (`wall_state`). The stress on the wall is that of the slope
+//! ∂v/∂n = (Δv₁ η₂/η₁ − Δv₂ η₁/η₂)/(η₂ − η₁), a parabola through the wall and two layers at the heights η; without
+//! layers, it is that of the normal part of the gradient of the interface particle. Along the wall, the gas rotates
+//! with it: ∇v = n ∂v/∂n + G (I − nn) with the rate of rotation G of the wall, so that rotation together with the wall
+//! causes no stress.
 //!
 //! The linearisation contains the differences across the face only (thin-layer approximation).
 use super::block::Block;

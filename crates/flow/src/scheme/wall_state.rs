@@ -1,8 +1,7 @@
 //! The state of the gas on a wall.
 //!
 //! *Slip walls.* The state of an interface particle is f_w = Σ_k W_k f_k − g Σ_k W_k n_k, with the fluid particles in
-//! front of it
-//! (`wall_fits`) and a slope g across the wall. The conditions are
+//! front of it (`wall_fits`) and a slope g across the wall. The conditions are
 //!
 //! - ∂(p/ρ^γ)/∂n = 0: the entropy does not vary across the wall;
 //! - ∂u_t/∂n = −κ u_t: the flow at the wall is irrotational (Crocco), with the curvature κ of the wall (a tensor in

@@ -1,10 +1,10 @@
-//! Chord lines of sections: from the leading edge to the trailing edge, whichever way a section is drawn and turned.
+//! Chord lines of sections, from the leading edge to the trailing edge, for any orientation of the section.
 //!
-//! The chord line of a NACA section is the one that its formulas are written for. An outline from a file begins at its trailing edge, or at the two ends
-//! of its base; its leading edge is the point farthest from there. Of other shapes the foremost and the rearmost points count, along the
-//! axis of the shape that lies nearest to the stream.
+//! The chord line of a NACA section is that of its formulas. An outline from a file starts at its trailing edge, or at
+//! the two ends of its base; its leading edge is the point farthest from there. For other shapes, the foremost and
+//! rearmost points along the axis of the shape nearest to the stream are used.
 //!
-//! The section of a wing is made one of unit chord with its nose at x = 0, since its chord is a key of the wing.
+//! The section of a wing is normalised to unit chord with its nose at x = 0, because its chord is a key of the wing.
 use std::f64::consts::{FRAC_PI_2, PI};
 
 use super::GeometryError;
@@ -14,22 +14,22 @@ use super::simplex;
 use crate::case::{Body, Shape};
 use crate::math::{Bounds, Vector};
 
-/// Distance in chords from (0, 0) and (1, 0) within which the ends of an outline are those of a section of unit chord: the leading edge of
-/// tables is where they put it, which on cambered sections is not the farthest point.
+/// Distances from (0, 0) and (1, 0), in chords, within which an outline counts as a section of unit chord. The leading
+/// edge of a table is where the table defines it, which on cambered sections is not the farthest point.
 const UNIT_NOSE: f64 = 0.02;
 const UNIT_TAIL: f64 = 0.005;
-/// Distance in sizes of the shape within which points are as far back as others.
+/// Relative distance within which points are equally far back.
 const SAME: f64 = 1e-6;
-/// Angle between a chord line and the x axis from which on it is told, radians (60°).
+/// Angle between a chord line and the x axis above which a warning is given (rad) (60°).
 const ACROSS: f64 = PI / 3.0;
-/// Corners within this part of the chord from the trailing edge are those of a base.
+/// Distance from the trailing edge, as a fraction of the chord, within which corners belong to a base.
 const BASE: f64 = 0.1;
 
-/// What an outline is that is much thicker beside its trailing edge than beside its nose.
+/// Warning for an outline that is much thicker near its trailing edge than near its nose.
 const DRAWN_BACKWARDS: &str =
     "it is round where its trailing edge should be, and sharp at its nose: it is drawn backwards";
 
-/// Leading and trailing edge of `body`, whose outline before it is placed is `shell`.
+/// Leading and trailing edge of `body`, whose outline before placement is `shell`.
 pub(super) fn chord_line(body: &Body, shell: &Shell<2>) -> [Vector<2>; 2] {
     let unit = [Vector([0.0, 0.0]), Vector([1.0, 0.0])];
     match &body.shape {
@@ -43,8 +43,8 @@ pub(super) fn chord_line(body: &Body, shell: &Shell<2>) -> [Vector<2>; 2] {
     }
 }
 
-/// The chord line of an outline that begins at its trailing edge. One that ends sharply on both sides may begin at either: its nose is the end
-/// at smaller x.
+/// Chord line of an outline that starts at its trailing edge. For an outline with sharp ends on both sides, the nose is
+/// the end at smaller x.
 pub(super) fn of_outline(shell: &Shell<2>) -> [Vector<2>; 2] {
     let points = &shell.vertices;
     let (first, last) = (points[0], points[points.len() - 1]);
@@ -57,14 +57,14 @@ pub(super) fn of_outline(shell: &Shell<2>) -> [Vector<2>; 2] {
     if sharp && tail[0] < nose[0] { [tail, nose] } else { [nose, tail] }
 }
 
-/// The sharp corners of an outline.
+/// Sharp corners of an outline.
 fn corners(shell: &Shell<2>) -> Vec<Vector<2>> {
     shell.features().edges.iter().map(|edge| edge.ends[0]).collect()
 }
 
-/// From the foremost points to the rearmost ones of a shape that is turned nose up by `angle`.
+/// From the foremost to the rearmost points of a shape that is rotated nose up by `angle`.
 fn along(shell: &Shell<2>, angle: f64) -> [Vector<2>; 2] {
-    // of the axis of the shape, since small angles do not change which points are foremost
+    // along the axis of the shape, because small angles do not change which points are foremost
     let quarters = (angle / FRAC_PI_2).round() * FRAC_PI_2;
     let back = Vector([quarters.cos(), quarters.sin()]);
     let size = Bounds::around(&shell.vertices).extent().max_abs();
@@ -76,7 +76,8 @@ fn along(shell: &Shell<2>, angle: f64) -> [Vector<2>; 2] {
     [middle_of(-1.0), middle_of(1.0)]
 }
 
-/// What is told of a section of a file or a formula whose chord line, placed, does not run downstream; `line` is that of the shape.
+/// A warning about a section whose chord line, after placement, is not directed downstream; `line` is that of the
+/// shape.
 pub(super) fn astray(name: &str, body: &Body, shell: &Shell<2>, line: &[Vector<2>; 2]) -> Option<String> {
     if !matches!(body.shape, Shape::Naca(_) | Shape::Airfoil(_)) {
         return None;
@@ -93,7 +94,7 @@ pub(super) fn astray(name: &str, body: &Body, shell: &Shell<2>, line: &[Vector<2
     ))
 }
 
-/// What is told of a wing that is turned so that its chords do not run downstream.
+/// A warning about a wing whose chords are not directed downstream.
 pub(super) fn wing_astray(name: &str, body: &Body) -> Option<String> {
     if !matches!(body.shape, Shape::Wing(_)) {
         return None;
@@ -104,16 +105,17 @@ pub(super) fn wing_astray(name: &str, body: &Body) -> Option<String> {
     ))
 }
 
-/// The section of a wing, read from a file, with its nose at x = 0 and a chord of 1; one that is drawn so stays as it is.
+/// The section of a wing from a file, with its nose at x = 0 and unit chord; a section that is given so is unchanged.
 pub(super) fn section_of_wing(
     file: &str,
     mut shell: Shell<2>,
     notes: &mut Vec<String>,
 ) -> Result<Shell<2>, GeometryError> {
-    /// Part of the chord by which the ends may differ from 0 and 1: noses of cambered sections reach beyond 0, and sections are cut short or
-    /// extended by less to end bluntly or sharply.
+    /// Greatest deviation of the ends from 0 and 1, as a fraction of the chord, that needs no message. Noses of
+    /// cambered sections extend beyond 0, and sections are shortened or extended by less for a blunt or sharp end.
     const WITHIN: f64 = 0.01;
-    /// Height of the nose in chords above which the section lies off its axis: drawn from its flat lower side it is less.
+    /// Height of the nose above its axis, in chords, above which a section is displaced; it is less when drawn from a
+    /// flat lower side.
     const HIGH: f64 = 0.2;
     let line = of_outline(&shell);
     let [nose, tail] = line;
@@ -148,7 +150,8 @@ pub(super) fn section_of_wing(
     Ok(shell)
 }
 
-/// Which edge or line of a section is where it should not be, for a chord from nose to tail along `chord`; `None` where it runs downstream.
+/// Which edge or line of a section has a wrong direction, for the vector `chord` from nose to tail; `None` when it is
+/// directed downstream.
 fn way<const D: usize>(chord: &Vector<D>) -> Option<(&'static str, String)> {
     let off = simplex::angle_between(&chord.unit(), &Vector::axis(0));
     let degrees = off.to_degrees();
@@ -161,9 +164,10 @@ fn way<const D: usize>(chord: &Vector<D>) -> Option<(&'static str, String)> {
     }
 }
 
-/// True for a section without base that is much thicker beside its trailing edge than beside its nose.
+/// True for a section without base that is much thicker near its trailing edge than near its nose.
 fn is_reversed(shell: &Shell<2>, [nose, tail]: &[Vector<2>; 2]) -> bool {
-    /// Part of the chord beside an end within which thickness is looked at, and times the other from which on it is much thicker.
+    /// Distance from an end, as a fraction of the chord, at which the thickness is compared, and the ratio above which
+    /// it is much thicker.
     const BESIDE: f64 = 0.02;
     const MUCH: f64 = 2.0;
     let (chord, along) = ((*tail - *nose).norm(), (*tail - *nose).unit());

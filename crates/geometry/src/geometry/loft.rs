@@ -1,10 +1,11 @@
-//! Wings from planform and sections, bodies of revolution from profiles, bodies of any section through stations.
+//! Surfaces of wings, bodies of revolution, and bodies with general cross-sections.
 //!
-//! A wing is a row of stations along the span, each with the place of its leading edge, a chord, a twist and a section; between
-//! them straight lines join points at equal parts of the length of the sides. Sections stand across the span: in planes y = const,
-//! or z = const for fins. A flat tip is the face of the last section. A round one lies inside the planform: where the section at the tip is 2 δ
-//! thick, thickness falls from δ (1 − sin φ) inboard of the tip as cos φ and is none at the tip, so that seen from above the wing is what was typed,
-//! and seen from ahead its tip is half a circle. A revolved one is half a body of revolution of the last section beyond the planform.
+//! A wing is a sequence of stations along the span, each with the position of its leading edge, a chord, a twist and a
+//! section. Between stations, straight lines connect points at equal fractions of the length of the sides. Sections lie
+//! in planes normal to the span, y = const, or z = const for fins. A flat tip is closed by the last section. A round
+//! tip lies inside the planform: where the tip section has the thickness 2 δ, the thickness decreases from δ (1 − sin
+//! φ) inboard of the tip as cos φ and vanishes at the tip. The planform is then exactly as specified, and the tip is a
+//! semicircle in front view. A revolved tip is half a body of revolution of the last section beyond the planform.
 use std::f64::consts::PI;
 
 use super::GeometryError;
@@ -15,28 +16,29 @@ use super::shell::{Exact, Shell};
 use crate::case::{PlanformShape, Tip, Wing, WingSides};
 use crate::math::Vector;
 
-/// Panels of a side of the section, and of a profile.
+/// Number of panels of a side of the section, and of a profile.
 const AROUND: usize = 96;
 const PROFILE: usize = 160;
-/// Panels along the span for each mean chord, fewest and most.
+/// Number of panels along the span per mean chord, with minimum and maximum.
 const PER_CHORD: f64 = 10.0;
 const ALONG: [f64; 2] = [8.0, 96.0];
-/// Last chord of an elliptic planform over the first, with tips that do not end in a point.
+/// Ratio of the last to the first chord of an elliptic planform whose tips do not end in a point.
 const LAST: f64 = 0.05;
-/// Panels of a round tip from the upper to the lower side, and of a body of revolution around it.
+/// Number of panels of a round tip from the upper to the lower side, and of a body of revolution around its axis.
 const CAP: usize = 12;
 const TURN: usize = 96;
-/// Part of the half span that a round tip takes at most, and what is left beside it for the last panel.
+/// Greatest depth of a round tip as a fraction of the half span, and the room for the last panel next to it.
 const DEEPEST: f64 = 0.5;
 const BESIDE: f64 = 1.5;
-/// Dihedral beyond which a wing is a fin: its sections stand in planes z = const.
+/// Dihedral angle above which a wing is a fin, whose sections lie in planes z = const.
 const FIN: f64 = 0.25 * PI;
-/// Part of the chord about which sections are twisted.
+/// Chord fraction of the twist axis.
 const TWISTED_ABOUT: f64 = 0.25;
-/// Turning angle of sharp edges, radians (40°).
+/// Angle above which an edge is sharp (rad) (40°).
 const CREASE: f64 = 40.0 * PI / 180.0;
 
-/// The wing; `sections` are the outlines of those of root and tip, `place` names it in messages.
+/// The surface of a wing. `sections` are the outlines at root and tip; `place` names the wing in messages. Fails for
+/// inconsistent values.
 pub(super) fn wing(place: &str, wing: &Wing, sections: [&Shell<2>; 2]) -> Result<Shell<3>, GeometryError> {
     let plan = Plan::of(place, wing)?;
     let sides = sections.map(|outline| Sides::of(outline, &clustered(AROUND)));
@@ -68,10 +70,10 @@ pub(super) fn wing(place: &str, wing: &Wing, sections: [&Shell<2>; 2]) -> Result
     Ok(if kink { shell.kinked(|x| x[1] == 0.0) } else { shell })
 }
 
-/// Reference values of the planform of a wing as it is typed, of what of it lies within these parts of its way from the left tip, -1, to
-/// the right one, 1; in its own axes. `None` for a wing that cannot be made.
+/// Reference values of the planform of a wing as specified, in its own axes, for the part between these fractions of
+/// the span from the left tip, −1, to the right one, 1. `None` for a wing that cannot be constructed.
 pub(super) fn typed_planform(wing: &Wing, [low, high]: [f64; 2]) -> Option<Planform> {
-    /// Panels of Simpson's rule on a half wing, exact for straight edges.
+    /// Number of panels of Simpson's rule on a half wing, which is exact for straight edges.
     const PANELS: usize = 64;
     let plan = Plan::of("", wing).ok()?;
     let elliptic = wing.planform == PlanformShape::Elliptic;
@@ -95,31 +97,31 @@ pub(super) fn typed_planform(wing: &Wing, [low, high]: [f64; 2]) -> Option<Planf
     let [sum, squares, edge, y, z] = sums;
     let across = if plan.up[2] != 0.0 { plan.span[1] } else { plan.span[2].abs() };
     let chord = squares / sum;
-    // halves that cancel leave rounding
+    // the round-off of cancelling halves is removed
     let y = if y.abs() < f64::EPSILON * sum * across { 0.0 } else { y / sum };
     let quarter = [edge / sum + QUARTER * chord, y, z / sum];
     (sum > 0.0).then_some(Planform { chord, area: sum * across, quarter })
 }
 
-/// Direction of the span of a wing from the root to the tip, whose length is that of a half wing; `None` for one that cannot be made.
+/// Vector from root to tip of a half wing along the span; `None` for a wing that cannot be constructed.
 pub(super) fn span_of(wing: &Wing) -> Option<Vector<3>> {
     Plan::of("", wing).ok().map(|plan| plan.span)
 }
 
-/// A body of revolution about the x axis, of the profile `chain` from the nose to the rear; closed by a face where it does not end
-/// on the axis.
+/// A body of revolution about the x axis with the profile `chain` from the nose to the rear; a flat face closes it
+/// where the profile does not end on the axis.
 pub(super) fn revolution(chain: &Chain<2>) -> Shell<3> {
     let around = |x: &Vector<2>, [c, s]: [f64; 2]| Vector([x[0], x[1] * c, x[1] * s]);
     along_axis(chain, around)
 }
 
-/// The body through sections x, width, height and z of the middle, which are |2y/width|^n + |2z/height|^n = 1 for the `exponent` n; closed by
-/// faces where it does not end in points.
+/// The body through the cross-sections x, width, height and z of the centre, which are |2y/width|^n + |2z/height|^n = 1
+/// with n = `exponent`; flat faces close it where it does not end in points.
 ///
-/// Width, upper and lower edge follow a curve that stays between the stations and is that of a body of revolution where sections are circles
-/// about one axis.
+/// Width, upper and lower edge follow curves that stay between the stations, and that give a body of revolution where
+/// the cross-sections are circles about one axis.
 pub(super) fn through(stations: &[Vec<f64>], exponent: f64, straight: bool) -> Shell<3> {
-    // measures of which a circle of radius r has the length r
+    // measures that equal r for a circle of radius r
     let measures = |s: &Vec<f64>| {
         let (width, height, middle) = (s[1], s[2], s.get(3).copied().unwrap_or(0.0));
         Vector([s[0], width / 8f64.sqrt(), 0.25 * height + 0.5 * middle, 0.25 * height - 0.5 * middle])
@@ -131,10 +133,11 @@ pub(super) fn through(stations: &[Vec<f64>], exponent: f64, straight: bool) -> S
     })
 }
 
-/// A body along the x axis: `around` gives the point at the cosine and the sine of an angle of the section at a point of the profile.
+/// A body along the x axis: `around` maps a point of the profile and the cosine and sine of an angle to a point of the
+/// surface.
 fn along_axis<const D: usize>(chain: &Chain<D>, around: impl Fn(&Vector<D>, [f64; 2]) -> Vector<3>) -> Shell<3> {
     let mut skin = Skin::default();
-    // no point beside a plane of symmetry that should lie in it
+    // points that should lie in a plane of symmetry do so exactly
     let turn = |k: usize| {
         let (s, c) = (2.0 * PI * k as f64 / TURN as f64).sin_cos();
         [c, s].map(|x| if x.abs() < 1e-15 { 0.0 } else { x })
@@ -156,7 +159,7 @@ fn along_axis<const D: usize>(chain: &Chain<D>, around: impl Fn(&Vector<D>, [f64
     skin.shell()
 }
 
-/// An ellipsoid about the origin with the half axes `half`.
+/// An ellipsoid about the origin with the semi-axes `half`.
 pub(super) fn ellipsoid(sphere: Shell<3>, half: [f64; 3]) -> Shell<3> {
     let normal = |n: Vector<3>| Vector::from_fn(|d| n[d] / half[d]).unit();
     Shell {
@@ -169,17 +172,17 @@ pub(super) fn ellipsoid(sphere: Shell<3>, half: [f64; 3]) -> Shell<3> {
 
 /// A station along the span.
 struct Station {
-    /// Place of the leading edge.
+    /// Position of the leading edge.
     nose: Vector<3>,
     chord: f64,
 }
 
-/// What the keys of a wing say.
+/// Geometry of a wing, derived from its keys.
 struct Plan<'a> {
     wing: &'a Wing,
-    /// From the leading edge of the root to that of the tip, across the stream.
+    /// Vector from the leading edge of the root to that of the tip, normal to the stream.
     span: Vector<3>,
-    /// Direction of the thickness.
+    /// Unit vector of the thickness direction.
     up: Vector<3>,
     both: bool,
     root_chord: f64,
@@ -214,7 +217,7 @@ impl<'a> Plan<'a> {
         Ok(Self { wing, span, up, both, root_chord })
     }
 
-    /// Parts of the way to the tip at which stations stand; round tips begin within the last panel and are `deepest` parts deep.
+    /// Fractions of the span of the stations; round tips start within the last panel and are at most `deepest` deep.
     fn parts(&self, deepest: f64) -> Vec<f64> {
         let length = self.span.norm();
         let count = |mean: f64| (PER_CHORD * length / mean).ceil().clamp(ALONG[0], ALONG[1]) as usize;
@@ -233,13 +236,14 @@ impl<'a> Plan<'a> {
         }
     }
 
-    /// Part of the way to the tip at which the last section stands.
+    /// Fraction of the span at which the last section lies.
     fn tip(&self) -> f64 {
         let cut = self.wing.planform == PlanformShape::Elliptic && self.wing.tip != Tip::Round;
         if cut { LAST.acos().sin() } else { 1.0 }
     }
 
-    /// What part of the way to the tip a round tip is deep, at the points of a side of the section from the nose to the rear.
+    /// Depth of a round tip as a fraction of the span, at the points of a side of the section from the nose to the
+    /// rear.
     fn depths(&self, sides: &[Sides; 2]) -> Vec<f64> {
         let round = self.wing.tip == Tip::Round && self.wing.planform == PlanformShape::Straight;
         if !round {
@@ -261,13 +265,13 @@ impl<'a> Plan<'a> {
             PlanformShape::Elliptic => (1.0 - part * part).max(0.0).sqrt(),
         };
         let chord = self.root_chord * over_root;
-        // the line at `sweep_at` is straight
+        // the line at the chord fraction `sweep_at` is straight
         let across = if self.both { self.span[1] } else { self.span.norm() };
         let back = self.wing.sweep_at * (self.root_chord - chord) + across * part * self.wing.sweep.0.tan();
         Station { nose: self.span * part + Vector([back, 0.0, 0.0]), chord }
     }
 
-    /// Points of the upper and the lower side, number `k` from the nose.
+    /// Points number `k` from the nose of the upper and the lower side.
     fn both_sides(&self, sides: &[Sides; 2], part: f64, k: usize) -> [Vector<3>; 2] {
         let station = self.station(part);
         let (sin, cos) = (self.wing.twist.0 * part).sin_cos();
@@ -280,7 +284,8 @@ impl<'a> Plan<'a> {
         [point([0, 1].map(|end| sides[end].upper[k])), point([0, 1].map(|end| sides[end].lower[k]))]
     }
 
-    /// Points around the sections: from the rear over the upper side to the nose, and back below. The last ring is the edge of the tip.
+    /// Points around the sections: from the rear over the upper side to the nose and back along the lower side. The
+    /// last ring is the tip edge.
     fn rings(&self, sides: &[Sides; 2], depths: &[f64]) -> Vec<Vec<Vector<3>>> {
         let deepest = depths.iter().copied().fold(0.0, f64::max);
         let ring = |part: f64| {
@@ -291,7 +296,8 @@ impl<'a> Plan<'a> {
         self.parts(deepest).into_iter().map(ring).collect()
     }
 
-    /// Rows of points between the upper and the lower side of a round tip, from the rear to the nose; none of others.
+    /// Rows of points between the upper and the lower side of a round tip, from the rear to the nose; empty for other
+    /// tips.
     fn cap(&self, sides: &[Sides; 2], depths: &[f64]) -> Vec<Vec<Vector<3>>> {
         let revolved = self.wing.tip == Tip::Revolved;
         if !revolved && depths.iter().all(|depth| *depth == 0.0) {
@@ -312,7 +318,7 @@ impl<'a> Plan<'a> {
     }
 }
 
-/// Vertices and triangles as they are put together.
+/// Vertices and triangles under construction.
 #[derive(Default)]
 struct Skin {
     vertices: Vec<Vector<3>>,
@@ -325,7 +331,7 @@ impl Skin {
         self.vertices.len() as u32 - 1
     }
 
-    /// A ring of points; the last one is the first of a section that ends sharply.
+    /// Adds a ring of points; the last point of a section with a sharp edge is its first.
     fn ring(&mut self, points: &[Vector<3>], sharp: bool) -> Vec<u32> {
         let own = points.len() - usize::from(sharp);
         let mut numbers: Vec<u32> = points[..own].iter().map(|x| self.add(x)).collect();
@@ -335,12 +341,12 @@ impl Skin {
         numbers
     }
 
-    /// A ring, or as many times the one point that it is.
+    /// Adds a ring, or the repeated index of a single point.
     fn ring_or_point(&mut self, points: &[Vector<3>], one: bool) -> Vec<u32> {
         if one { vec![self.add(&points[0]); points.len()] } else { self.ring(points, false) }
     }
 
-    /// Triangles between rows, one after another; the last point of a closed row is followed by its first.
+    /// Adds triangles between consecutive rows; closed rows continue from the last point to the first.
     fn strips(&mut self, rows: &[Vec<u32>], closed: bool) {
         for pair in rows.windows(2) {
             let n = pair[0].len();
@@ -381,7 +387,7 @@ impl Skin {
         }
     }
 
-    /// The shell, turned so that its normals point out of it.
+    /// The shell, oriented so that its normals point outward.
     fn shell(self) -> Shell<3> {
         let Self { vertices, mut elements } = self;
         let volume: f64 = elements

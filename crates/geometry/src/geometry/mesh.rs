@@ -1,7 +1,8 @@
 //! Triangle files: STL (binary and text), OBJ and PLY.
 //!
-//! All give a soup of triangles with part names; [`super::repair`] makes a surface of it. What is written otherwise than the format says, but can
-//! be read in one way only, is read, and told; what is damaged is refused with its line, or the number of its triangle.
+//! Each format yields a triangle soup with names of parts, from which [`super::repair`] makes a surface. Deviations
+//! from the format that have only one interpretation are accepted and reported; damaged data are rejected with the
+//! line, or the number of the triangle.
 mod obj;
 mod ply;
 mod stl;
@@ -12,21 +13,21 @@ use crate::case::decimal_comma;
 use crate::math::Vector;
 use std::io::Read;
 
-/// Longest file that is read, bytes: 80 million triangles.
+/// Greatest size of a file in bytes: 80 million triangles.
 const LONGEST: u64 = 4 << 30;
 
-/// Triangles as they stand in a file.
+/// Triangles as given in a file.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Soup {
     pub(super) triangles: Vec<[Vector<3>; 3]>,
-    /// Index into `names` of every triangle.
+    /// Index into `names` for every triangle.
     pub(super) tags: Vec<u16>,
     /// Names of the solids or groups.
     pub(super) names: Vec<String>,
 }
 
 impl Soup {
-    /// Makes `name` the part of the triangles to come.
+    /// Sets `name` as the part of the following triangles.
     fn begin(&mut self, name: &str) -> u16 {
         let name = if name.is_empty() { UNNAMED } else { name };
         let found = self.names.iter().position(|n| n == name).unwrap_or_else(|| {
@@ -42,7 +43,8 @@ impl Soup {
     }
 }
 
-/// Reads a surface file; the end of the name tells the format, `notes` says what was assumed.
+/// Reads a surface file, whose extension defines the format; assumptions are appended to `notes`. Fails when the data
+/// are damaged.
 pub(super) fn read(file: &str, input: impl Read, notes: &mut Vec<String>) -> Result<Soup, GeometryError> {
     let mut bytes = Vec::new();
     let length = input.take(LONGEST).read_to_end(&mut bytes);
@@ -64,7 +66,7 @@ pub(super) fn read(file: &str, input: impl Read, notes: &mut Vec<String>) -> Res
     Ok(soup)
 }
 
-/// Why a line is not `what` it should be.
+/// Message about a line that is not `what` it should be.
 fn no_point(line: &str, what: &str) -> String {
     match decimal_comma(line) {
         Some(word) => format!("`{word}` has a decimal comma"),
@@ -82,7 +84,7 @@ fn point(words: &[&str]) -> Option<Vector<3>> {
     }
 }
 
-/// Refuses the corner of a triangle, counted from one, that is no finite point.
+/// Rejects a corner of a triangle (numbered from one) that is not a finite point.
 fn finite(file: &str, triangle: usize, corner: &Vector<3>) -> Result<(), GeometryError> {
     if corner.is_finite() && corner.max_abs() < 1e100 {
         return Ok(());

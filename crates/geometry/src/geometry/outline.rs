@@ -1,10 +1,10 @@
-//! Smooth closed outlines in the plane from points.
+//! Smooth closed outlines in 2-D from points.
 //!
-//! The points of an airfoil become a closed curve: pieces between corners, each a cubic spline (see [`super::spline`]),
-//! sampled so densely that chords stay within 5e-8 of the chord length of the curve. The leading edge lies inside a
-//! piece, so nothing breaks there. Where consecutive chords turn by more than 35° there is a corner, except at a rounded
-//! nose: near the leading edge coarse points turn by more than that, but their neighbours turn too, while beside a sharp
-//! nose they hardly do.
+//! The points of an airfoil become a closed curve of pieces between corners. Each piece is a cubic spline (see
+//! [`super::spline`]), sampled so densely that chords deviate from it by at most 5e-8 of the chord length. The leading
+//! edge lies inside a piece, so that the curve is smooth there. A point is a corner where consecutive chords turn by
+//! more than 35°, except at a rounded nose: near the leading edge, coarse points turn by more than this, but so do
+//! their neighbours, whereas next to a sharp nose the outline is nearly straight.
 use super::GeometryError;
 use super::marks::{CORNER, Mark, SAME, at, extent, straight_shell};
 use super::section::Chain;
@@ -16,46 +16,49 @@ use super::surface::Surface;
 use crate::math::Vector;
 use std::f64::consts::PI;
 
-/// Points of an airfoil nearer than this fraction of the chord are one point: files have five digits or six, and the rounding of a point
-/// that is listed twice would be two corners.
+/// Distance, as a fraction of the chord, below which points of an airfoil coincide. Files have five or six digits, and
+/// the round-off of a repeated point would form two corners.
 const NEAR: f64 = 1e-6;
-/// Outlines smaller than this are refused: squares of lengths would underflow.
+/// Smallest size of an outline; squares of lengths of smaller ones would underflow.
 const SMALLEST: f64 = 1e-100;
-/// A trailing edge open by less than this fraction of the chord is closed: it is below the digits of coordinate files, which have five.
+/// Gap of a trailing edge, as a fraction of the chord, below which it is closed; it is below the five digits of
+/// coordinate files.
 const CLOSED: f64 = 2e-5;
-/// A gap along the chord of less than this fraction of it is closed at its middle: three digits of coordinates.
+/// Gap along the chord, as a fraction of it, below which it is closed at its middle; files with three digits have such
+/// gaps.
 const NARROW: f64 = 1e-3;
-/// A trailing edge open by more than this fraction of the chord is a mistake: bases of the thickest flatbacks have a quarter.
+/// Gap of a trailing edge, as a fraction of the chord, above which it is an error; the thickest flatback airfoils have
+/// a quarter.
 const OPEN: f64 = 0.5;
-/// Where the first point is not repeated, the gap is at most so many times as long as the longer of the sides beside it.
+/// Greatest gap, relative to the longer adjacent side, where the first point is not repeated at the end.
 const NEXT: f64 = 2.5;
-/// Greatest distance of a chord from the curve, in chords.
+/// Greatest deviation of a segment from the curve, as a fraction of the chord.
 const SAGITTA: f64 = 5e-8;
-/// Segments are no longer than the chord over this number.
+/// Minimum number of segments per chord length.
 const SEGMENTS: f64 = 1500.0;
-/// Most segments between two points: a nose given by a few points needs a thousand, wild data would ask for millions.
+/// Greatest number of segments between two points; a nose given by a few points needs a thousand.
 const PARTS: f64 = 1024.0;
-/// Slope of the first side of a profile above which its nose is round: 30° from the axis.
+/// Slope of the first side of a profile above which its nose is round (30° from the axis).
 const STEEP: f64 = 0.577;
-/// The nose is what lies within this fraction of the chord from the leading edge.
+/// Extent of the nose from the leading edge, as a fraction of the chord.
 const NOSE: f64 = 0.1;
-/// Next to a sharp nose the outline turns by less than this fraction of the turn at the nose.
+/// Ratio of the turning angle next to the nose and at the nose, below which the nose is sharp.
 const SHARP_NOSE: f64 = 0.05;
 
-/// Most corners whose lines are told.
+/// Greatest number of corners whose lines are reported.
 const TOLD: usize = 8;
 
 /// A point of the outline with its outward normal.
 pub(super) type Sample = (Vector<2>, Vector<2>);
 
-/// The smooth shell through `marks`, which run around the section from the trailing edge to the trailing edge.
-/// Repairs are appended to `notes`; `file` names the source.
+/// The smooth shell through `marks`, which are ordered around the section from trailing edge to trailing edge. Repairs
+/// are appended to `notes`; `file` names the source. Fails when the outline cannot be used.
 pub(super) fn airfoil(file: &str, marks: Vec<Mark>, notes: &mut Vec<String>) -> Result<Shell<2>, GeometryError> {
     let (mut marks, base) = closed_loop(file, marks, notes)?;
     simple_outline::drop_further_rounds(file, &mut marks, 4, notes);
     simple_outline::refuse_crossing(file, &marks)?;
     if orient(file, &mut marks, notes)? && !base {
-        // The trailing edge stays first.
+        // the trailing edge stays the first point
         marks.rotate_right(1);
     }
     simple_outline::refuse_overlap(file, &marks, Opposite::Allowed)?;
@@ -87,12 +90,12 @@ pub(super) fn airfoil(file: &str, marks: Vec<Mark>, notes: &mut Vec<String>) -> 
     Ok(shell)
 }
 
-/// How an outline without a base ends.
+/// Description of the rear end of an outline without a base.
 fn rear(corners: &[usize]) -> &'static str {
     if corners.contains(&0) { "with a sharp trailing edge" } else { "with a round trailing edge" }
 }
 
-/// A shell of straight sides between `points`; every turn above `crease` is a sharp corner.
+/// A shell of straight sides between `points`; a turn of more than `crease` is a sharp corner.
 pub(super) fn polygon(
     name: &str,
     points: &[Vector<2>],
@@ -119,9 +122,10 @@ pub(super) fn polygon(
     Ok(Shell { crease, ..straight_shell(&marks) })
 }
 
-/// The pieces of a profile, `points` from the nose to the rear with the place on the axis first and measures of the section after it:
-/// straight ones between all points, or smooth ones between corners, which stay between their points, cross the axis at a right angle where
-/// they reach it steeply, and in a point elsewhere.
+/// The pieces of a profile. `points` run from the nose to the rear; each has the position on the axis, followed by
+/// measures of the cross-section. Pieces are straight between all points, or smooth between corners. Smooth pieces stay
+/// between their points; they meet the axis at a right angle where they approach it steeply, and form a point
+/// elsewhere.
 pub(super) fn profile<const D: usize>(points: &[Vector<D>], straight: bool) -> Chain<D> {
     let last = points.len() - 1;
     let turn =
@@ -131,7 +135,7 @@ pub(super) fn profile<const D: usize>(points: &[Vector<D>], straight: bool) -> C
     let across = |x: Vector<D>| Vector::<D>::from_fn(|d| if d == 0 { 0.0 } else { x[d] });
     let end = |i: usize, beside: usize| {
         let along = points[beside] - points[i];
-        // the first measure is a width, of the plane the radius
+        // the first measure is a width; in 2-D it is the radius
         let steep = points[i][1] == 0.0 && across(along).norm() > STEEP * along[0].abs();
         let outward = across(along).unit() * if i < beside { 1.0 } else { -1.0 };
         if steep && !straight { End::Along(outward) } else { End::Natural }
@@ -155,7 +159,7 @@ pub(super) fn straight(from: Vector<2>, to: Vector<2>) -> Vec<Sample> {
     vec![(from, normal), (to, normal)]
 }
 
-/// Joins pieces, each of which begins where the one before ends, into a closed counter-clockwise shell.
+/// Joins consecutive pieces to a closed counter-clockwise shell.
 pub(super) fn shell_of_pieces(pieces: &[Vec<Sample>], crease: f64) -> Shell<2> {
     let vertices: Vec<Vector<2>> = pieces.iter().flat_map(|p| p[..p.len() - 1].iter().map(|s| s.0)).collect();
     let normals = pieces.iter().flat_map(|p| p.windows(2).map(|s| [s[0].1, s[1].1])).collect();
@@ -165,7 +169,8 @@ pub(super) fn shell_of_pieces(pieces: &[Vec<Sample>], crease: f64) -> Shell<2> {
     Shell { vertices, elements, normals: Some(normals), curvature: None, tags, tag_names, exact: Exact::None, crease }
 }
 
-/// Removes repeated points and decides how the trailing edge ends: the distinct points, and true for a blunt base.
+/// Removes repeated points and determines the shape of the trailing edge. Returns the distinct points, and true for a
+/// blunt base.
 fn closed_loop(file: &str, mut marks: Vec<Mark>, notes: &mut Vec<String>) -> Result<(Vec<Mark>, bool), GeometryError> {
     let chord = extent(&marks.iter().map(|m| m.point).collect::<Vec<_>>());
     drop_repeated(file, &mut marks, NEAR * chord, notes);
@@ -205,8 +210,8 @@ fn closed_loop(file: &str, mut marks: Vec<Mark>, notes: &mut Vec<String>) -> Res
     Err(GeometryError::refused(file, what, hint))
 }
 
-/// True when the line that closes an open outline continues it at one end at least, and is not longer than the sides beside it: then only
-/// the first point is not repeated.
+/// True when the closing line of an open outline continues it at one end at least and is not longer than the adjacent
+/// sides, so that only the repetition of the first point is missing.
 fn goes_on(marks: &[Mark]) -> bool {
     let n = marks.len();
     let side = |a: usize, b: usize| marks[b].point - marks[a].point;
@@ -215,9 +220,9 @@ fn goes_on(marks: &[Mark]) -> bool {
     gap.norm() <= NEXT * before.norm().max(after.norm()) && turn(&before, &gap).min(turn(&gap, &after)) < CORNER
 }
 
-/// True when an open end is a base, which stands across the chord, while a gap that points were left out of runs along it.
+/// True when an open end is a base across the chord, as opposed to a gap of missing points along the chord.
 fn is_across(marks: &[Mark]) -> bool {
-    /// Least angle between a base and the chord, radians (30°).
+    /// Smallest angle between a base and the chord (rad) (30°).
     const ACROSS: f64 = PI / 6.0;
     let (first, last) = (marks[0].point, marks[marks.len() - 1].point);
     let middle = (first + last) * 0.5;
@@ -229,7 +234,8 @@ fn is_across(marks: &[Mark]) -> bool {
     angle.min(PI - angle) >= ACROSS
 }
 
-/// True when an outline that is closed ends with a base, a straight side between two corners; it is turned to begin behind that side.
+/// True when a closed outline ends with a base, a straight side between two corners; the outline is rotated to start
+/// after this side.
 fn ends_with_base(marks: &mut [Mark]) -> bool {
     let points: Vec<Vector<2>> = marks.iter().map(|m| m.point).collect();
     let (corners, last) = (corners(&points, false), marks.len() - 1);
@@ -254,7 +260,7 @@ fn ends_with_base(marks: &mut [Mark]) -> bool {
     found
 }
 
-/// Removes points that repeat the one before, from which they are no farther than `within`.
+/// Removes points that are nearer than `within` to the previous one.
 fn drop_repeated(file: &str, marks: &mut Vec<Mark>, within: f64, notes: &mut Vec<String>) {
     let mut lines = Vec::new();
     marks.dedup_by(|b, a| {
@@ -274,7 +280,7 @@ fn drop_repeated(file: &str, marks: &mut Vec<Mark>, within: f64, notes: &mut Vec
     }
 }
 
-/// Turns a clockwise outline round and says whether it did; refuses one without area.
+/// Reverses a clockwise outline and returns whether it did; rejects an outline without area.
 fn orient(file: &str, marks: &mut [Mark], notes: &mut Vec<String>) -> Result<bool, GeometryError> {
     let origin = marks[0].point;
     let twice = (1..marks.len() - 1)
@@ -295,7 +301,7 @@ fn orient(file: &str, marks: &mut [Mark], notes: &mut Vec<String>) -> Result<boo
     Ok(twice < 0.0)
 }
 
-/// Indices of the corners of a closed outline that begins at the trailing edge; with a base its two ends are corners.
+/// Indices of the corners of a closed outline that starts at the trailing edge; with a base, its two ends are corners.
 fn corners(points: &[Vector<2>], base: bool) -> Vec<usize> {
     let n = points.len();
     let turn = |i: usize| {
@@ -313,12 +319,12 @@ fn corners(points: &[Vector<2>], base: bool) -> Vec<usize> {
     (0..n).filter(|&i| sharp(i) || (base && (i == 0 || i == n - 1))).collect()
 }
 
-/// Where the outline turns between two points that lie much farther apart than those on either side: points may be missing there.
-/// Sides that end at corners are left out: they may be straight lines, which need no points between their ends.
+/// Reports gaps between two points that are much farther apart than their neighbours where the outline is curved:
+/// points may be missing. Sides that end at corners are excluded, because they may be straight.
 fn wide_gaps(marks: &[Mark], corners: &[usize], chord: f64) -> Vec<String> {
-    /// Times the longer of the two sides next to it.
+    /// Ratio to the longer of the two adjacent sides above which a gap is wide.
     const WIDE: f64 = 2.5;
-    /// Least height of the arc over the gap, in chords: what a spline may get wrong there.
+    /// Smallest height of the arc over the gap, as a fraction of the chord: the possible error of a spline there.
     const HEIGHT: f64 = 2e-4;
     let n = marks.len();
     let side = |i: usize| marks[(i + 1) % n].point - marks[i % n].point;
@@ -336,8 +342,8 @@ fn wide_gaps(marks: &[Mark], corners: &[usize], chord: f64) -> Vec<String> {
     (0..n).filter_map(gap).collect()
 }
 
-/// Spline pieces between corners; an outline without corners is one piece whose ends share a tangent, and a `base` is one straight side, the
-/// last one.
+/// Spline pieces between corners. An outline without corners is a single piece with a common tangent at its ends; a
+/// `base` is a straight side, the last one.
 fn pieces(points: &[Vector<2>], corners: &[usize], base: bool, chord: f64) -> Vec<Vec<Sample>> {
     let n = points.len();
     if corners.is_empty() {
@@ -356,7 +362,7 @@ fn pieces(points: &[Vector<2>], corners: &[usize], base: bool, chord: f64) -> Ve
     corners.iter().enumerate().map(piece).collect()
 }
 
-/// Points and outward normals along a spline, dense enough for [`SAGITTA`] and [`SEGMENTS`].
+/// Points and outward normals along a spline, with the density of [`SAGITTA`] and [`SEGMENTS`].
 fn sample(spline: &Spline<2>, chord: f64) -> Vec<Sample> {
     let sample = |(i, s)| {
         let (point, tangent) = spline.at(i, s);
@@ -365,12 +371,12 @@ fn sample(spline: &Spline<2>, chord: f64) -> Vec<Sample> {
     parts(spline, chord).into_iter().map(sample).collect()
 }
 
-/// Points along a spline, as dense.
+/// Points along a spline with this density.
 fn places<const D: usize>(spline: &Spline<D>, chord: f64) -> Vec<Vector<D>> {
     parts(spline, chord).into_iter().map(|(i, s)| spline.at(i, s).0).collect()
 }
 
-/// Intervals of a spline and fractions of them that are dense enough.
+/// Intervals of a spline, and fractions of them, with this density.
 fn parts<const D: usize>(spline: &Spline<D>, chord: f64) -> Vec<(usize, f64)> {
     let mut all = Vec::new();
     for i in 0..spline.intervals() {
@@ -382,7 +388,7 @@ fn parts<const D: usize>(spline: &Spline<D>, chord: f64) -> Vec<(usize, f64)> {
     all
 }
 
-/// Unit normal on the right of a direction: outward for counter-clockwise outlines.
+/// Unit normal to the right of a direction, which is outward for counter-clockwise outlines.
 fn right_of(direction: Vector<2>) -> Vector<2> {
     Vector([direction[1], -direction[0]]).unit()
 }

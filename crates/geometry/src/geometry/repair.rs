@@ -18,8 +18,7 @@ const NEEDLE: f64 = 1e-9;
 const ROUNDS: usize = 16;
 
 /// Makes a shell of the triangles of `file`; vertices nearer than `within` are merged if it is given. Notes about
-/// repairs are appended to
-/// `notes`. Fails when a defect cannot be repaired safely.
+/// repairs are appended to `notes`. Fails when a defect cannot be repaired safely.
 pub(super) fn shell(
     file: &str,
     soup: &Soup,

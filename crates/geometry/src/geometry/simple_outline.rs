@@ -1,33 +1,33 @@
-//! Outlines that run once around a body and never over themselves.
+//! Outlines that run exactly once around a body without overlapping themselves.
 //!
-//! The turns of such an outline at its points sum to 360 deg, counter-clockwise, or to -360 deg (H. Hopf, *Compositio Mathematica* 2, 1935).
-//! A list of points that goes around twice has a sum of 720 deg though its sides cross nowhere: they lie on one another. The loads on it would
-//! be twice those of the body.
+//! The turning angles of such an outline sum to 360 deg (counter-clockwise) or −360 deg (H. Hopf, *Compositio
+//! Mathematica* 2, 1935). A list of points that runs around twice has a sum of 720 deg although its sides cross
+//! nowhere: they coincide. The loads on it would be twice those of the body.
 use super::GeometryError;
 use super::marks::{Mark, SAME, at, extent, straight_shell};
 use super::surface::Surface;
 use std::f64::consts::PI;
 
-/// Difference of a turn from 180 deg below which its sense is not known: the outline runs back along itself there.
+/// Difference of a turning angle from 180 deg below which its sign is undetermined, because the outline reverses there.
 const BACK: f64 = 1e-9;
-/// Rounding of a sum of turns, radians.
+/// Round-off of a sum of turning angles (rad).
 const ROUNDING: f64 = 1e-6;
 
-/// What becomes of sides that lie on one another in opposite directions: those of thin trailing edges do, in files of few digits.
+/// Treatment of coinciding sides of opposite direction, which occur at thin trailing edges in files of few digits.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Opposite {
     Allowed,
     Refused,
 }
 
-/// Leaves out what only repeats the first round, of at least `fewest` points, of a closed outline, and says so.
+/// Removes repetitions of the first round, which has at least `fewest` points, from a closed outline, and reports them.
 pub(super) fn drop_further_rounds(name: &str, marks: &mut Vec<Mark>, fewest: usize, notes: &mut Vec<String>) {
     let n = marks.len();
     let points: Vec<_> = marks.iter().map(|m| m.point).collect();
     let within = SAME * extent(&points);
     let repeats = |round: &usize| (*round..n).all(|k| (points[k] - points[k - round]).norm() <= within);
     let rounds = (2..=n / fewest).filter(|times| n.is_multiple_of(*times)).map(|times| n / times);
-    // the shortest round of all
+    // the shortest possible round
     let Some(round) = rounds.filter(repeats).min() else { return };
     let times = if n / round == 2 { "twice".to_owned() } else { format!("{} times", n / round) };
     let line = marks[round].line;
@@ -35,7 +35,7 @@ pub(super) fn drop_further_rounds(name: &str, marks: &mut Vec<Mark>, fewest: usi
     notes.push(format!("{name}: the outline is drawn {times}: its points from line {line} on are left out"));
 }
 
-/// Refuses an outline whose sides cross.
+/// Rejects an outline whose sides cross.
 pub(super) fn refuse_crossing(name: &str, marks: &[Mark]) -> Result<(), GeometryError> {
     let Some((x, sides)) = straight(marks).intersection() else { return Ok(()) };
     let [e, f] = sides.map(|e| side(marks, e));
@@ -43,7 +43,7 @@ pub(super) fn refuse_crossing(name: &str, marks: &[Mark]) -> Result<(), Geometry
     Err(GeometryError::refused(name, what, "check the order of these points"))
 }
 
-/// Refuses an outline without crossings whose sides lie on one another, or that does not run once around a body.
+/// Rejects an outline without crossings whose sides coincide, or that does not run exactly once around a body.
 pub(super) fn refuse_overlap(name: &str, marks: &[Mark], opposite: Opposite) -> Result<(), GeometryError> {
     let hint = "list every point once, in their order around the body";
     let points: Vec<_> = marks.iter().map(|m| m.point).collect();

@@ -1,22 +1,23 @@
 //! Parametric cubic splines through points of an outline.
 //!
-//! The curve x(t) is cubic between knots and twice continuously differentiable (de Boor, A Practical Guide to Splines,
-//! 1978, ch. 4). Knots are spaced by chord length, so t is close to arc length and a curve that turns around a leading
-//! edge stays one smooth function. The second derivatives M solve a tridiagonal system,
-//! h_{i-1} M_{i-1} + 2 (h_{i-1} + h_i) M_i + h_i M_{i+1} = 6 (Δ_i − Δ_{i-1}), Δ_i = (x_{i+1} − x_i) / h_i.
+//! The curve x(t) is piecewise cubic and twice continuously differentiable (de Boor, A Practical Guide to Splines,
+//! 1978, ch. 4). The knots are spaced by chord length, so that t is close to arc length and a curve around a leading
+//! edge is a single smooth function. The second derivatives M solve the tridiagonal system h_{i-1} M_{i-1} + 2
+//! (h_{i-1} + h_i) M_i + h_i M_{i+1} = 6 (Δ_i − Δ_{i-1}), Δ_i = (x_{i+1} − x_i) / h_i.
 //!
-//! A monotone spline is the same curve where that stays between its points: in every coordinate it rises or falls with them and never
-//! overshoots. Its slopes m solve m_{i-1}/h_{i-1} + 2 (1/h_{i-1} + 1/h_i) m_i + m_{i+1}/h_i = 3 (Δ_{i-1}/h_{i-1} + Δ_i/h_i); those that leave
-//! the limits 0 ≤ m/Δ ≤ 3 of both sides (Fritsch and Carlson, SIAM J. Numer. Anal. 17, 1980; Hyman, SIAM J. Sci. Stat. Comput. 4, 1983) are held
-//! at them, and the others are solved for again. There the curve has one continuous derivative. Points on a straight line are joined by it.
+//! A monotone spline is the same curve where this stays between its points: each coordinate increases or decreases with
+//! the points and never overshoots. Its slopes m solve m_{i-1}/h_{i-1} + 2 (1/h_{i-1} + 1/h_i) m_i + m_{i+1}/h_i = 3
+//! (Δ_{i-1}/h_{i-1} + Δ_i/h_i). Slopes that exceed the limits 0 ≤ m/Δ ≤ 3 of both sides (Fritsch and Carlson, SIAM J.
+//! Numer. Anal. 17, 1980; Hyman, SIAM J. Sci. Stat. Comput. 4, 1983) are set to them, and the others are solved for
+//! again. The curve has one continuous derivative at these points. Points on a straight line are connected by it.
 use crate::math::Vector;
 
-/// How the curve ends.
+/// End condition of the curve.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum End<const D: usize> {
-    /// No curvature.
+    /// Zero curvature.
     Natural,
-    /// Along a unit direction.
+    /// Tangent along a unit vector.
     Along(Vector<D>),
 }
 
@@ -30,24 +31,25 @@ pub(super) struct Spline<const D: usize> {
 }
 
 impl<const D: usize> Spline<D> {
-    /// The spline through `points`, which are at least two and differ from their neighbours.
+    /// The spline through `points`, which are at least two and differ from their neighbours, with knots spaced by chord
+    /// length.
     pub(super) fn new(points: Vec<Vector<D>>, start: End<D>, finish: End<D>) -> Self {
         Self::over(chord_lengths(&points), points, start, finish)
     }
 
-    /// The spline through `points` at parameters of one's own, which rise.
+    /// The spline through `points` at given ascending parameters.
     pub(super) fn over(knots: Vec<f64>, points: Vec<Vector<D>>, start: End<D>, finish: End<D>) -> Self {
         let all = second_derivatives(&knots, &points, start, finish);
         let bend = all.windows(2).map(|m| [m[0], m[1]]).collect();
         Self { knots, points, bend }
     }
 
-    /// The spline through `points` that stays between them in every coordinate.
+    /// The monotone spline through `points`, with knots spaced by chord length.
     pub(super) fn monotone(points: Vec<Vector<D>>, start: End<D>, finish: End<D>) -> Self {
         Self::monotone_over(chord_lengths(&points), points, start, finish)
     }
 
-    /// The same at parameters of one's own, which rise.
+    /// The monotone spline through `points` at given ascending parameters.
     pub(super) fn monotone_over(knots: Vec<f64>, points: Vec<Vector<D>>, start: End<D>, finish: End<D>) -> Self {
         let end = |end: End<D>, d: usize| match end {
             End::Natural => None,
@@ -72,7 +74,7 @@ impl<const D: usize> Spline<D> {
         self.points.len() - 1
     }
 
-    /// Point and derivative at fraction `s` of interval `i`.
+    /// Point and derivative at the fraction `s` of interval `i`.
     pub(super) fn at(&self, i: usize, s: f64) -> (Vector<D>, Vector<D>) {
         let h = self.knots[i + 1] - self.knots[i];
         let (a, b) = (1.0 - s, s);
@@ -83,7 +85,7 @@ impl<const D: usize> Spline<D> {
         (point, (q - p) * (1.0 / h) - m * slope(a) + n * slope(b))
     }
 
-    /// Largest sagitta of interval `i` over its chord when it is one piece: h² max |M| / 8.
+    /// Upper bound of the sagitta of interval `i` over its chord, h² max |M| / 8.
     pub(super) fn sagitta(&self, i: usize) -> f64 {
         let h = self.knots[i + 1] - self.knots[i];
         self.bend[i][0].norm().max(self.bend[i][1].norm()) * h * h / 8.0
@@ -95,7 +97,7 @@ impl<const D: usize> Spline<D> {
     }
 }
 
-/// Parameters at points: the length of the chords up to each of them.
+/// Parameters of the points: accumulated chord lengths.
 fn chord_lengths<const D: usize>(points: &[Vector<D>]) -> Vec<f64> {
     let mut knots = vec![0.0; points.len()];
     for i in 1..points.len() {
@@ -104,22 +106,22 @@ fn chord_lengths<const D: usize>(points: &[Vector<D>]) -> Vec<f64> {
     knots
 }
 
-/// For every knot whether it lies on a straight line with those beside it.
+/// For every knot, whether it lies on a straight line with its neighbours.
 fn straight_knots<const D: usize>(secants: &[Vector<D>]) -> Vec<bool> {
-    /// Difference of slopes that typed digits leave.
+    /// Relative difference of slopes due to the finite number of digits in a file.
     const SAME: f64 = 1e-6;
     let inner = secants.windows(2).map(|s| (s[1] - s[0]).norm() <= SAME * s[0].norm().max(s[1].norm()));
     std::iter::once(false).chain(inner).chain([false]).collect()
 }
 
-/// Slopes at knots of a monotone cubic with these steps and slopes of chords; those of `ends` that are given are kept.
+/// Slopes at the knots of a monotone cubic with these step lengths and chord slopes; given values in `ends` are kept.
 fn monotone_slopes(steps: &[f64], secants: &[f64], straight: &[bool], ends: [Option<f64>; 2]) -> Vec<f64> {
-    /// Times the slope of a chord up to which a cubic is monotone.
+    /// Greatest ratio of slope and chord slope for which a cubic is monotone.
     const STEEPEST: f64 = 3.0;
     let n = secants.len();
     let mut fixed: Vec<Option<f64>> = (0..=n).map(|i| straight[i].then(|| secants[i])).collect();
     (fixed[0], fixed[n]) = (ends[0], ends[1]);
-    // an end without curvature between limits leaves none of its own
+    // an end with zero curvature, limited to the monotone range
     let limited = |i: usize, slope: f64| {
         let (a, b) = (secants[i - 1], secants[i]);
         let most = if a * b > 0.0 { STEEPEST * a.abs().min(b.abs()) } else { 0.0 };
@@ -137,7 +139,8 @@ fn monotone_slopes(steps: &[f64], secants: &[f64], straight: &[bool], ends: [Opt
     }
 }
 
-/// Slopes of the cubic with two continuous derivatives at all knots where none is fixed, without curvature at free ends.
+/// Slopes of the cubic with two continuous derivatives at all knots except the `fixed` ones, with zero curvature at
+/// free ends.
 fn slopes_between(steps: &[f64], secants: &[f64], fixed: &[Option<f64>]) -> Vec<f64> {
     let n = secants.len();
     let row = |i: usize| match fixed[i] {
@@ -162,7 +165,7 @@ fn slopes_between(steps: &[f64], secants: &[f64], fixed: &[Option<f64>]) -> Vec<
     right
 }
 
-/// Solves the tridiagonal system by elimination; it is diagonally dominant, so no pivoting is needed.
+/// Solves the tridiagonal system by elimination; it is diagonally dominant, so that no pivoting is needed.
 fn second_derivatives<const D: usize>(
     knots: &[f64],
     points: &[Vector<D>],

@@ -1,24 +1,24 @@
-//! What is wrong with the constants of a material.
+//! Checks of the constants of a material.
 use super::flow::{Hardening, Plasticity, Rate, Softening};
 use super::{Law, Material, Prony};
 
-/// Sentences about constants outside physics.
+/// Messages about inadmissible constants.
 struct Faults(Vec<String>);
 
 impl Faults {
-    /// Notes the number `x` called `name` unless `holds`; `allowed` says what would.
+    /// Adds a message about the number `x` named `name` unless `holds`; `allowed` describes the permitted values.
     fn unless(&mut self, holds: bool, name: &str, x: f64, allowed: &str) {
         if !holds {
             self.0.push(format!("`{name}` is {x}; it must be {allowed}"));
         }
     }
 
-    /// Notes a number that is not positive and finite.
+    /// Adds a message about a number that is not positive and finite.
     fn positive(&mut self, name: &str, x: f64) {
         self.unless(0.0 < x && x.is_finite(), name, x, "positive");
     }
 
-    /// Notes a number that is negative or not finite.
+    /// Adds a message about a number that is negative or not finite.
     fn not_negative(&mut self, name: &str, x: f64) {
         self.unless(0.0 <= x && x.is_finite(), name, x, "zero or positive");
     }
@@ -65,13 +65,13 @@ impl Faults {
             self.positive("branches.time", branch.time);
         }
         let total = 1.0 - law.lasting();
-        // fractions such as 0.7 + 0.3 need not add up to 1 exactly
+        // fractions such as 0.7 + 0.3 may not add up to exactly 1
         self.unless(total <= 1.0 + 1e-12, "sum of branches.fraction", total, "at most 1");
     }
 }
 
 impl Material {
-    /// Constants outside physics, each with what is allowed; empty for a sound material.
+    /// One message for each inadmissible constant, with the permitted values; empty for an admissible material.
     pub fn faults(&self) -> Vec<String> {
         let mut faults = Faults(Vec::new());
         faults.positive("density", self.density);

@@ -1,9 +1,9 @@
-//! Flow stress of metals: what the equivalent stress must exceed before a solid yields.
+//! Flow stress of metals: equivalent stress at which a material yields.
 //!
-//! σ_y = σ(ε_p) · r(ε̇_p) · (1 − T*ᵐ), a product of hardening with the equivalent plastic strain ε_p, of a factor of its rate
-//! and of a factor of temperature, T* = (T − T_r)/(T_m − T_r) kept within 0 and 1. Johnson & Cook (1983) are the case
-//! (A + B ε_pⁿ)(1 + C ln(ε̇_p/ε̇₀))(1 − T*ᵐ); Voce (1948) and Perzyna (1966) are others. Units of stress, time and temperature
-//! are those of the caller, one set throughout.
+//! σ_y = σ(ε_p) · r(ε̇_p) · (1 − T*ᵐ) is a product of hardening with the equivalent plastic strain ε_p, a factor of the
+//! plastic strain rate, and a factor of temperature, T* = (T − T_r)/(T_m − T_r) limited to [0, 1]. Johnson and Cook
+//! (1983) is the case (A + B ε_pⁿ)(1 + C ln(ε̇_p/ε̇₀))(1 − T*ᵐ); Voce (1948) and Perzyna (1966) are others. Stress,
+//! time and temperature may be in any consistent units.
 use crate::math::jet::Scalar;
 
 /// Hardening with the equivalent plastic strain.
@@ -11,72 +11,73 @@ use crate::math::jet::Scalar;
 pub enum Hardening {
     /// σ = start + linear ε_p + saturation (1 − e^(−exponent ε_p)): linear and Voce (1948).
     Voce {
-        /// Yield stress of the virgin material.
+        /// Initial yield stress.
         start: f64,
-        /// Slope of the linear part, stress.
+        /// Slope of the linear part (stress).
         linear: f64,
-        /// What the exponential part adds in the end, stress.
+        /// Total increase by the exponential part (stress).
         saturation: f64,
-        /// How fast it does, per unit of strain.
+        /// Rate of the exponential part, per unit of strain.
         exponent: f64,
     },
-    /// σ = start + modulus ε_pⁿ: Ludwik, Johnson & Cook's A, B and n.
+    /// σ = start + modulus ε_pⁿ: Ludwik, and Johnson and Cook with A, B and n.
     Power {
-        /// Yield stress A of the virgin material.
+        /// Initial yield stress A.
         start: f64,
-        /// Hardening modulus B, stress.
+        /// Hardening modulus B (stress).
         modulus: f64,
         /// Exponent n.
         exponent: f64,
     },
 }
 
-/// Factor of the rate of plastic strain.
+/// Factor of the plastic strain rate.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Rate {
-    /// 1: the rate does not matter.
+    /// The factor 1: rate independent.
     Independent,
     /// 1 + C ln(ε̇_p/ε̇₀), and 1 at rates below ε̇₀ (Johnson & Cook 1983).
     Logarithmic {
         /// Factor C.
         factor: f64,
-        /// Reference rate ε̇₀, one over time.
+        /// Reference rate ε̇₀, per unit of time.
         reference: f64,
     },
-    /// 1 + (η ε̇_p)^(1/N): the overstress of ε̇_p = ⟨σ/σ_y − 1⟩ᴺ/η (Perzyna 1966).
+    /// 1 + (η ε̇_p)^(1/N), the overstress for ε̇_p = ⟨σ/σ_y − 1⟩ᴺ/η (Perzyna 1966).
     Overstress {
-        /// Viscosity η, time.
+        /// Viscosity η, a time.
         viscosity: f64,
         /// Exponent N.
         exponent: f64,
     },
 }
 
-/// Factor 1 − T*ᵐ of temperature, T* = (T − reference)/(melting − reference) within 0 and 1.
+/// Thermal softening factor 1 − T*ᵐ with T* = (T − reference)/(melting − reference) limited to [0, 1].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Softening {
-    /// Temperature T_r up to which there is none.
+    /// Temperature T_r below which there is no softening.
     pub reference: f64,
-    /// Temperature T_m at which nothing is left.
+    /// Melting temperature T_m, at which the flow stress vanishes.
     pub melting: f64,
     /// Exponent m.
     pub exponent: f64,
 }
 
-/// Plasticity with von Mises' yield condition: flow stress and kinematic hardening.
+/// Von Mises plasticity: flow stress and kinematic hardening.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Plasticity {
-    /// Hardening with plastic strain, the same in all directions.
+    /// Isotropic hardening with plastic strain.
     pub hardening: Hardening,
-    /// Prager's modulus: rise of the back stress with plastic strain in uniaxial tension, stress.
+    /// Modulus of Prager's kinematic hardening (stress): increase of the back stress per plastic strain in uniaxial
+    /// tension.
     pub kinematic: f64,
-    /// Factor of the rate.
+    /// Factor of the plastic strain rate.
     pub rate: Rate,
     /// Factor of the temperature; `None`: 1.
     pub softening: Option<Softening>,
 }
 
-/// Constants of Johnson & Cook (1983).
+/// Constants of the Johnson-Cook flow stress (1983).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct JohnsonCook {
     /// Yield stress A.
@@ -85,16 +86,16 @@ pub struct JohnsonCook {
     pub modulus: f64,
     /// Hardening exponent n.
     pub exponent: f64,
-    /// Factor C of the rate.
+    /// Coefficient C of the strain rate.
     pub rate_factor: f64,
-    /// Reference rate ε̇₀.
+    /// Reference strain rate ε̇₀.
     pub rate: f64,
-    /// Factor of temperature: T_r, T_m and m.
+    /// Thermal softening with T_r, T_m and m.
     pub softening: Softening,
 }
 
 impl Plasticity {
-    /// Linear hardening: start + slope ε_p; a slope of 0 is perfect plasticity.
+    /// Linear hardening start + slope ε_p; with zero slope, perfect plasticity.
     pub const fn linear(start: f64, slope: f64) -> Self {
         Self {
             hardening: Hardening::Voce { start, linear: slope, saturation: 0.0, exponent: 0.0 },
@@ -104,7 +105,7 @@ impl Plasticity {
         }
     }
 
-    /// (A + B ε_pⁿ)(1 + C ln(ε̇_p/ε̇₀))(1 − T*ᵐ) of Johnson & Cook (1983).
+    /// The Johnson-Cook flow stress (A + B ε_pⁿ)(1 + C ln(ε̇_p/ε̇₀))(1 − T*ᵐ) (1983).
     pub const fn johnson_cook(c: JohnsonCook) -> Self {
         Self {
             hardening: Hardening::Power { start: c.start, modulus: c.modulus, exponent: c.exponent },
@@ -114,7 +115,7 @@ impl Plasticity {
         }
     }
 
-    /// Flow stress at an equivalent plastic strain, its rate and a temperature.
+    /// Flow stress for an equivalent plastic strain, its rate, and a temperature.
     #[inline]
     pub fn flow_stress<S: Scalar>(&self, strain: S, rate: S, temperature: S) -> S {
         let softening = self.softening.map_or(S::constant(1.0), |s| s.factor(temperature));
@@ -123,7 +124,7 @@ impl Plasticity {
 }
 
 impl Hardening {
-    /// Stress at an equivalent plastic strain, slow and cold.
+    /// Stress for an equivalent plastic strain at low rate and reference temperature.
     #[inline(always)]
     pub fn stress<S: Scalar>(&self, strain: S) -> S {
         match *self {
@@ -140,7 +141,7 @@ impl Hardening {
 }
 
 impl Rate {
-    /// Factor at a rate of plastic strain.
+    /// Factor for a plastic strain rate.
     #[inline(always)]
     pub fn factor<S: Scalar>(&self, rate: S) -> S {
         match *self {
@@ -158,7 +159,7 @@ impl Rate {
 }
 
 impl Softening {
-    /// Factor at a temperature.
+    /// Factor for a temperature.
     #[inline(always)]
     pub fn factor<S: Scalar>(&self, temperature: S) -> S {
         let t = (temperature - self.reference) * (1.0 / (self.melting - self.reference));
@@ -166,7 +167,7 @@ impl Softening {
     }
 }
 
-/// xⁿ for positive x and the constant 0 otherwise, where the derivative may be infinite.
+/// xⁿ for positive x, and the constant 0 otherwise, where the derivative may be infinite.
 #[inline(always)]
 fn power<S: Scalar>(x: S, n: f64) -> S {
     if !(x.value() > 0.0) {

@@ -1,41 +1,41 @@
-//! The hypoelastic law: rates of stress from rates of deformation.
+//! Hypoelasticity: the stress rate as a function of the strain rate.
 //!
-//! σ = −p I + s with dp = −K tr D dt and ds = 2G dev D dt, D = sym ∇v, the stress carried along by the rotation of the
-//! material: equations (7) to (9) of the paper, with the sign of p and the bulk modulus that belong to them and a rate that a
-//! rotation of the observer does not change. Over a step from F_n to F the relative gradient is F F_n⁻¹ = r u, and D dt is
-//! ln u to third order, 2(u − I)(u + I)⁻¹, before the rotation r (Rashid 1993, *Int. J. Numer. Methods Eng.* 36; the
-//! mid-point rule of Hughes & Winget 1980 is the same for r = I). A rotation of any size leaves the stress as it is.
+//! σ = −p I + s with dp = −K tr D dt and ds = 2G dev D dt, D = sym ∇v, where the stress rotates with the material:
+//! equations (7) to (9) of the paper, with the correct sign of p and bulk modulus and an objective rate. Over a step
+//! from F_n to F, the relative gradient is F F_n⁻¹ = r u, and D dt equals ln u to third order, 2(u − I)(u + I)⁻¹,
+//! before the rotation r (Rashid 1993, *Int. J. Numer. Methods Eng.* 36; the mid-point rule of Hughes and Winget 1980
+//! is the same for r = I). A rotation of any magnitude does not change the stress in the rotated frame.
 //!
-//! The law has no energy. What is called stored is that of the stress, J (s:s/4G + p²/2K); the work that is left over is
-//! reported as dissipated and may have either sign.
+//! The law has no stored-energy function. The reported stored energy is that of the stress, J (s:s/4G + p²/2K); the
+//! remaining work is reported as dissipated and may have either sign.
 use super::elastic::Moduli;
 use super::tensor::{self, Tensor};
 use super::{Response, Step};
 use crate::math::jet::Scalar;
 use std::ops::Range;
 
-/// Where F of the last step is kept, rows first.
+/// Range of F of the last step in the history, row by row.
 const GRADIENT: Range<usize> = 0..9;
-/// Where Cauchy's stress is kept.
+/// Range of the Cauchy stress in the history.
 const STRESS: Range<usize> = 9..15;
-/// Numbers kept.
+/// Number of history variables.
 pub(super) const LENGTH: usize = 15;
 
-/// Cauchy's stress of a pressure and a deviator, σ = −p I + s — eq. (7).
+/// Cauchy stress of a pressure and a deviator, σ = −p I + s, eq. (7).
 #[doc(alias = "eq7")]
 #[inline(always)]
 pub fn cauchy_stress<S: Scalar>(pressure: S, deviator: &Tensor<S>) -> Tensor<S> {
     tensor::plus_identity(deviator, -pressure)
 }
 
-/// Pressure after the strain `strain` = D dt of a step, p ← p − K tr D dt — eq. (8).
+/// Pressure after a step with the strain `strain` = D dt, p ← p − K tr D dt, eq. (8).
 #[doc(alias = "eq8")]
 #[inline(always)]
 pub fn pressure<S: Scalar>(moduli: &Moduli, old: S, strain: &Tensor<S>) -> S {
     old - tensor::trace(strain) * moduli.bulk
 }
 
-/// Deviator after the strain `strain` = D dt and the rotation r of a step, s ← r (s + 2G dev D dt) rᵀ — eq. (9).
+/// Deviator after a step with the strain `strain` = D dt and the rotation r, s ← r (s + 2G dev D dt) rᵀ, eq. (9).
 #[doc(alias = "eq9")]
 #[inline(always)]
 pub fn deviator<S: Scalar>(moduli: &Moduli, old: &Tensor<S>, strain: &Tensor<S>, r: &Tensor<S>) -> Tensor<S> {
@@ -43,7 +43,7 @@ pub fn deviator<S: Scalar>(moduli: &Moduli, old: &Tensor<S>, strain: &Tensor<S>,
     tensor::product_transposed(&tensor::product(r, &grown), r)
 }
 
-/// Strain D dt in the axes before the step and rotation r of the relative gradient F F_n⁻¹ of a step.
+/// Strain D dt in the axes before the step, and rotation r, of the relative gradient F F_n⁻¹.
 #[inline(always)]
 pub fn increment<S: Scalar>(relative: &Tensor<S>) -> (Tensor<S>, Tensor<S>) {
     let rotation = tensor::rotation(relative);
@@ -54,7 +54,7 @@ pub fn increment<S: Scalar>(relative: &Tensor<S>) -> (Tensor<S>, Tensor<S>) {
     (tensor::symmetric(&strain), rotation)
 }
 
-/// The state without stress.
+/// Writes the history of the stress-free state.
 pub(super) fn begin(history: &mut [f64]) {
     history[..LENGTH].fill(0.0);
     for k in 0..3 {
@@ -62,7 +62,7 @@ pub(super) fn begin(history: &mut [f64]) {
     }
 }
 
-/// Stress after a step.
+/// Response to a step.
 pub(super) fn respond<S: Scalar>(moduli: &Moduli, step: &Step<'_, S>, new: &mut [S]) -> Response<S> {
     let f = step.gradient;
     let kept = &step.old[GRADIENT];
@@ -90,7 +90,7 @@ pub(super) fn respond<S: Scalar>(moduli: &Moduli, step: &Step<'_, S>, new: &mut 
     Response { stress, stored, dissipated }
 }
 
-/// Energy of a Cauchy stress per reference volume, J (s:s/4G + p²/2K).
+/// Stored energy of a Cauchy stress per undeformed volume, J (s:s/4G + p²/2K).
 #[inline(always)]
 fn energy<S: Scalar>(m: &Moduli, volume: S, cauchy: &Tensor<S>) -> S {
     let p = tensor::trace(cauchy) * (1.0 / 3.0);

@@ -1,44 +1,44 @@
-//! Materials by name.
+//! Catalogue of materials.
 //!
-//! Numbers are in SI units. Each entry says where its numbers were published; a solid whose source gives a range has a value
-//! within it. Metals of Johnson and Cook flow at room temperature T_r and, with 0.9 of their plastic work as heat
-//! (Taylor & Quinney 1934), soften adiabatically.
+//! Values are in SI units. Each entry names the publication of its values; where a source gives a range, the value lies
+//! within it. The Johnson-Cook metals have the room temperature as T_r and soften adiabatically, with 0.9 of their
+//! plastic work converted to heat (Taylor and Quinney 1934).
 use super::elastic::Moduli;
 use super::flow::{JohnsonCook, Plasticity, Softening};
 use super::{Law, Material, ROOM_TEMPERATURE, Thermal};
 
-/// A material with its names.
+/// An entry of the catalogue.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Named {
-    /// The name.
+    /// Name of the material.
     pub name: &'static str,
-    /// Other names.
+    /// Alternative names.
     pub aliases: &'static [&'static str],
     /// The material.
     pub material: Material,
-    /// Where the numbers come from.
+    /// Source of the values.
     pub source: &'static str,
 }
 
-/// The material with that name or alias; capitals, spaces, hyphens and underscores do not matter.
+/// The material with this name or alias; upper case, spaces, hyphens and underscores are ignored.
 pub fn named(name: &str) -> Option<&'static Named> {
     let plain = |s: &str| s.chars().filter(|c| c.is_alphanumeric()).collect::<String>().to_lowercase();
     let wanted = plain(name);
     LIBRARY.iter().find(|m| std::iter::once(&m.name).chain(m.aliases).any(|n| plain(n) == wanted))
 }
 
-/// Part of plastic work that becomes heat in metals (Taylor & Quinney 1934).
+/// Fraction of the plastic work that is converted to heat in metals (Taylor and Quinney 1934).
 const HEATED_FRACTION: f64 = 0.9;
-/// A million pascals.
+/// One megapascal, in Pa.
 const MPA: f64 = 1e6;
-/// A thousand million pascals.
+/// One gigapascal, in Pa.
 const GPA: f64 = 1e9;
-/// A million pounds per square inch.
+/// One million pounds per square inch, in Pa.
 const MSI: f64 = 6.894_757_293e9;
-/// A pound per cubic inch.
+/// One pound per cubic inch, in kg/m³.
 const POUND_PER_CUBIC_INCH: f64 = 27_679.904_7;
 
-/// Elastic part of a metal: density, Young's modulus, Poisson's ratio, heat capacity.
+/// A metal with the given density, Young's modulus, Poisson's ratio and heat capacity.
 const fn metal(density: f64, young: f64, poisson: f64, heat_capacity: f64, law: Law) -> Material {
     Material {
         density,
@@ -49,7 +49,7 @@ const fn metal(density: f64, young: f64, poisson: f64, heat_capacity: f64, law: 
     }
 }
 
-/// A, B in MPa, n, C, m at a reference rate of 1/s, and the melting temperature in K.
+/// A Johnson-Cook law: A and B in MPa, n, C and m at the reference rate 1/s, and the melting temperature in K.
 const fn johnson_cook([a, b, n, c, m]: [f64; 5], melting: f64) -> Law {
     Law::Plastic(Plasticity::johnson_cook(JohnsonCook {
         start: a * MPA,
@@ -61,7 +61,7 @@ const fn johnson_cook([a, b, n, c, m]: [f64; 5], melting: f64) -> Law {
     }))
 }
 
-/// An elastic solid: density, Young's modulus, Poisson's ratio.
+/// An elastic material with the given density, Young's modulus and Poisson's ratio.
 const fn elastic(density: f64, young: f64, poisson: f64, law: Law) -> Material {
     Material::new(density, Moduli::of_young(young, poisson), law)
 }
@@ -82,7 +82,7 @@ const JOHNSON_COOK_AND_HANDBOOK: &str = "flow, density, heat: Johnson & Cook (19
 const LESUER_AND_HANDBOOK: &str =
     "flow: Lesuer (2000), DOT/FAA/AR-00/25; elasticity, density, heat: MIL-HDBK-5J (2003)";
 
-/// All materials.
+/// All materials of the catalogue.
 pub static LIBRARY: [Named; 16] = [
     entry(
         "aluminium 2024-T3",

@@ -1,22 +1,24 @@
-//! Plane stress: thin sheets, free to become thinner or thicker.
+//! Plane stress: thin sheets whose thickness can change freely.
 //!
-//! F₃₃ is what makes P₃₃ = 0; the other components out of the plane are those given, usually zero. Newton's steps in plain
-//! numbers find it, and one more in the numbers of the caller gives its first derivative: the tangent is the consistent one.
+//! F₃₃ is determined by P₃₃ = 0; the other out-of-plane components are given, usually zero. Newton's iteration in plain
+//! numbers finds F₃₃, and one more step in the scalar type of the caller yields its first derivative, so that the
+//! tangent is consistent.
 use super::tensor::{self, Tensor};
 use super::{MOST_HISTORY, Material, Response};
 use crate::math::dual::Dual;
 use crate::math::jet::Scalar;
 
-/// Steps after which the search ends.
+/// Greatest number of Newton steps.
 const MOST_STEPS: usize = 50;
-/// Relative size of a step that no longer matters.
+/// Relative size of a step at which the iteration ends.
 const ROUNDING: f64 = 4.0 * f64::EPSILON;
-/// Least and greatest factor by which a step changes the thickness.
+/// Minimum and maximum factor by which a step changes the thickness.
 const FACTORS: (f64, f64) = (0.5, 2.0);
 
-/// Response of `material` in plane stress and the F₃₃ that goes with it, searched from `guess`.
+/// Response of `material` in plane stress and the corresponding F₃₃, with `guess` as the initial value.
 ///
-/// `f[2][2]` is not read; `guess` is that of the last step, 1 at first. History and `dt` are those of [`Material::respond`].
+/// `f[2][2]` is ignored; `guess` is the value of the last step, initially 1. History and `dt` are as for
+/// [`Material::respond`].
 pub fn plane_stress<S: Scalar>(
     material: &Material,
     f: &Tensor<S>,

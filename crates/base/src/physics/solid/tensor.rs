@@ -1,15 +1,15 @@
-//! Tensors of second order in three dimensions, as rows of plain arrays.
+//! Second-order tensors in three dimensions, as arrays of rows.
 //!
-//! What the laws of solids need, over any [`Scalar`], so that derivatives pass through. Components are named `a[i][j]`: row i,
-//! column j. Symmetric tensors are kept as six numbers in the order 11, 22, 33, 12, 23, 31.
+//! All operations are generic in [`Scalar`], so that derivatives propagate. Components are `a[i][j]`: row i, column j.
+//! Symmetric tensors are stored as six numbers in the order 11, 22, 33, 12, 23, 31.
 use crate::math::jet::Scalar;
 
-/// Nine components, rows first: F of a deformation, P of a stress.
+/// Nine components, row by row: a deformation gradient F or a stress P.
 pub type Tensor<S = f64> = [[S; 3]; 3];
 
-/// Relative change of the rotation below which one more iteration is exact to rounding.
+/// Relative change of the rotation below which one more iteration reaches round-off.
 const NEARLY_A_ROTATION: f64 = 1e-9;
-/// Iterations after which the search for a rotation is given up: a tensor with det ≤ 0 or NaN.
+/// Greatest number of iterations for a rotation; the iteration does not converge for det ≤ 0 or NaN.
 const MOST_ITERATIONS: usize = 60;
 
 /// The tensor with components `f(i, j)`.
@@ -24,73 +24,73 @@ pub fn of<S: Scalar>(mut f: impl FnMut(usize, usize) -> S) -> Tensor<S> {
     t
 }
 
-/// The same tensor in other numbers.
+/// The tensor converted to another scalar type by `f`.
 #[inline(always)]
 pub fn convert<S: Scalar, T: Scalar>(a: &Tensor<S>, f: impl Fn(S) -> T) -> Tensor<T> {
     of(|i, j| f(a[i][j]))
 }
 
-/// Identity I.
+/// The identity I.
 #[inline(always)]
 pub fn identity<S: Scalar>() -> Tensor<S> {
     of(|i, j| S::constant(if i == j { 1.0 } else { 0.0 }))
 }
 
-/// Sum a + b.
+/// The sum a + b.
 #[inline(always)]
 pub fn sum<S: Scalar>(a: &Tensor<S>, b: &Tensor<S>) -> Tensor<S> {
     of(|i, j| a[i][j] + b[i][j])
 }
 
-/// Difference a − b.
+/// The difference a − b.
 #[inline(always)]
 pub fn difference<S: Scalar>(a: &Tensor<S>, b: &Tensor<S>) -> Tensor<S> {
     of(|i, j| a[i][j] - b[i][j])
 }
 
-/// Multiple s·a.
+/// The product s·a with a scalar.
 #[inline(always)]
 pub fn times<S: Scalar>(a: &Tensor<S>, s: S) -> Tensor<S> {
     of(|i, j| a[i][j] * s)
 }
 
-/// a + s·b.
+/// The sum a + s·b.
 #[inline(always)]
 pub fn plus<S: Scalar>(a: &Tensor<S>, s: S, b: &Tensor<S>) -> Tensor<S> {
     of(|i, j| a[i][j] + s * b[i][j])
 }
 
-/// a + s·I.
+/// The sum a + s·I.
 #[inline(always)]
 pub fn plus_identity<S: Scalar>(a: &Tensor<S>, s: S) -> Tensor<S> {
     of(|i, j| if i == j { a[i][j] + s } else { a[i][j] })
 }
 
-/// Product a b.
+/// The product a b.
 #[inline(always)]
 pub fn product<S: Scalar>(a: &Tensor<S>, b: &Tensor<S>) -> Tensor<S> {
     of(|i, j| a[i][0] * b[0][j] + a[i][1] * b[1][j] + a[i][2] * b[2][j])
 }
 
-/// Product aᵀ b.
+/// The product aᵀ b.
 #[inline(always)]
 pub fn transposed_product<S: Scalar>(a: &Tensor<S>, b: &Tensor<S>) -> Tensor<S> {
     of(|i, j| a[0][i] * b[0][j] + a[1][i] * b[1][j] + a[2][i] * b[2][j])
 }
 
-/// Product a bᵀ.
+/// The product a bᵀ.
 #[inline(always)]
 pub fn product_transposed<S: Scalar>(a: &Tensor<S>, b: &Tensor<S>) -> Tensor<S> {
     of(|i, j| a[i][0] * b[j][0] + a[i][1] * b[j][1] + a[i][2] * b[j][2])
 }
 
-/// Transpose aᵀ.
+/// The transpose aᵀ.
 #[inline(always)]
 pub fn transpose<S: Scalar>(a: &Tensor<S>) -> Tensor<S> {
     of(|i, j| a[j][i])
 }
 
-/// Cofactors det(a) a⁻ᵀ, defined for singular tensors too.
+/// The cofactor tensor det(a) a⁻ᵀ, defined for singular tensors too.
 #[inline(always)]
 pub fn cofactor<S: Scalar>(a: &Tensor<S>) -> Tensor<S> {
     of(|i, j| {
@@ -108,7 +108,7 @@ pub fn determinant<S: Scalar>(a: &Tensor<S>) -> S {
         + a[0][2] * (a[1][0] * a[2][1] - a[1][1] * a[2][0])
 }
 
-/// Inverse a⁻¹; not finite where the determinant is zero.
+/// The inverse a⁻¹; not finite where the determinant is zero.
 #[inline(always)]
 pub fn inverse<S: Scalar>(a: &Tensor<S>) -> Tensor<S> {
     let cofactor = cofactor(a);
@@ -129,27 +129,27 @@ pub fn contraction<S: Scalar>(a: &Tensor<S>, b: &Tensor<S>) -> S {
     row(0) + row(1) + row(2)
 }
 
-/// Frobenius norm √(a : a); of zero it has no derivative.
+/// Frobenius norm √(a : a); it has no derivative at zero.
 #[inline(always)]
 pub fn norm<S: Scalar>(a: &Tensor<S>) -> S {
     contraction(a, a).sqrt()
 }
 
-/// Deviator a − ⅓ tr(a) I.
+/// The deviator a − ⅓ tr(a) I.
 #[inline(always)]
 pub fn deviator<S: Scalar>(a: &Tensor<S>) -> Tensor<S> {
     plus_identity(a, trace(a) * (-1.0 / 3.0))
 }
 
-/// Symmetric part (a + aᵀ)/2: of a velocity gradient, the rate of deformation.
+/// The symmetric part (a + aᵀ)/2; for a velocity gradient, the rate of deformation.
 #[inline(always)]
 pub fn symmetric<S: Scalar>(a: &Tensor<S>) -> Tensor<S> {
     of(|i, j| (a[i][j] + a[j][i]) * 0.5)
 }
 
-/// Rotation r of the polar decomposition a = r u with u symmetric and positive; NaN where det a ≤ 0.
+/// Rotation r of the polar decomposition a = r u with u symmetric positive definite; NaN where det a ≤ 0.
 ///
-/// Newton's iteration r ← (r + r⁻ᵀ)/2 (Higham 1986), which takes derivatives along.
+/// Newton's iteration r ← (r + r⁻ᵀ)/2 (Higham 1986), through which derivatives propagate.
 #[inline]
 pub fn rotation<S: Scalar>(a: &Tensor<S>) -> Tensor<S> {
     if !(determinant(a).value() > 0.0) {
@@ -162,7 +162,7 @@ pub fn rotation<S: Scalar>(a: &Tensor<S>) -> Tensor<S> {
         let next = of(|i, j| r[i][j] * 0.5 + cofactor[i][j] * half);
         let change = (0..9).fold(0.0, |m: f64, k| m.max((next[k / 3][k % 3].value() - r[k / 3][k % 3].value()).abs()));
         r = next;
-        // the change squared is what is left: nothing, in the derivative too
+        // the error is the square of the change: round-off, in the derivative too
         if change < NEARLY_A_ROTATION {
             break;
         }
@@ -182,7 +182,7 @@ pub fn unpack<S: Scalar>(c: &[S]) -> Tensor<S> {
     [[c[0], c[3], c[5]], [c[3], c[1], c[4]], [c[5], c[4], c[2]]]
 }
 
-/// The symmetric tensor of six plain numbers, as constants.
+/// The symmetric tensor of six constants, with zero derivatives.
 #[inline(always)]
 pub fn constant<S: Scalar>(c: &[f64]) -> Tensor<S> {
     convert(&unpack(c), S::constant)

@@ -1,42 +1,43 @@
-//! Finite viscoelasticity: a neo-Hookean solid whose resistance to a change of shape relaxes.
+//! Finite viscoelasticity: a neo-Hookean material whose shear response relaxes.
 //!
 //! S = S_vol + g∞ S_iso + Σ Q_i with dQ_i/dt + Q_i/τ_i = g_i dS_iso/dt and g∞ = 1 − Σ g_i (Simo 1987; Holzapfel 2000,
-//! *Nonlinear Solid Mechanics*, §6.10). S is the second stress of Piola and Kirchhoff, S_vol and S_iso those of the neo-Hookean
-//! solid of the *instantaneous* moduli: after a long rest the shear modulus is g∞ μ. Volume does not relax.
+//! *Nonlinear Solid Mechanics*, §6.10). S is the second Piola-Kirchhoff stress; S_vol and S_iso are those of the
+//! neo-Hookean material with the *instantaneous* moduli. After a long time the shear modulus is g∞ μ. The volumetric
+//! response does not relax.
 //!
-//! A step is exact where S_iso runs linearly in time: Q ← e^(−Δt/τ) Q + g (1 − e^(−Δt/τ)) τ/Δt ΔS_iso (Simo & Hughes 1998,
-//! eq. 10.3.12). The energy of a branch is taken as that of a linear spring, (CQ):(QC)/(4 g μ); what the work ½ Q:ΔC of a
-//! branch leaves beyond its change is dissipated.
+//! A step is exact where S_iso is a linear function of time: Q ← e^(−Δt/τ) Q + g (1 − e^(−Δt/τ)) τ/Δt ΔS_iso (Simo and
+//! Hughes 1998, eq. 10.3.12). The stored energy of a branch is that of a linear spring, (CQ):(QC)/(4 g μ); the
+//! difference between the work ½ Q:ΔC of a branch and the change of its stored energy is dissipated.
 use super::elastic::{Moduli, excess_volume, isochoric, neo_hookean_energy, volumetric_energy};
 use super::tensor::{self, Tensor};
 use super::{Response, Step};
 use crate::math::jet::Scalar;
 
-/// Most branches of a series.
+/// Greatest number of branches of a series.
 pub const MOST_BRANCHES: usize = 6;
-/// Numbers kept with all branches in use: C and a stress each.
+/// Number of history variables with all branches in use: C and one stress per branch.
 pub(super) const MOST_LENGTH: usize = 6 * (1 + MOST_BRANCHES);
 
-/// One spring and dashpot.
+/// A branch of the Prony series: a spring and a dashpot in series.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Branch {
-    /// Its part g of the instantaneous shear modulus.
+    /// Fraction g of the instantaneous shear modulus.
     pub fraction: f64,
-    /// Its relaxation time τ.
+    /// Relaxation time τ.
     pub time: f64,
 }
 
-/// Prony series of up to six branches.
+/// A Prony series of up to six branches.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Prony {
-    /// Branches, of which the first `count` are in use.
+    /// The branches; the first `count` are in use.
     pub branches: [Branch; MOST_BRANCHES],
     /// Number of branches in use.
     pub count: usize,
 }
 
 impl Prony {
-    /// The series of the pairs (fraction, relaxation time); those beyond the sixth are left out.
+    /// The series of the pairs (fraction, relaxation time); pairs beyond the sixth are ignored.
     pub const fn new(pairs: &[(f64, f64)]) -> Self {
         let mut branches = [Branch { fraction: 0.0, time: 1.0 }; MOST_BRANCHES];
         let count = if pairs.len() < MOST_BRANCHES { pairs.len() } else { MOST_BRANCHES };
@@ -53,24 +54,24 @@ impl Prony {
         &self.branches[..self.count.min(MOST_BRANCHES)]
     }
 
-    /// Part g∞ of the shear modulus that does not relax.
+    /// Fraction g∞ of the shear modulus that does not relax.
     pub fn lasting(&self) -> f64 {
         1.0 - self.used().iter().map(|b| b.fraction).sum::<f64>()
     }
 
-    /// Numbers kept.
+    /// Number of history variables.
     pub(super) fn length(&self) -> usize {
         6 * (1 + self.used().len())
     }
 
-    /// The state after a long rest.
+    /// Writes the history of the relaxed, undeformed state.
     pub(super) fn begin(&self, history: &mut [f64]) {
         history[..self.length()].fill(0.0);
         history[..3].fill(1.0);
     }
 }
 
-/// Stress after a step.
+/// Response to a step.
 pub(super) fn respond<S: Scalar>(moduli: &Moduli, law: &Prony, step: &Step<'_, S>, new: &mut [S]) -> Response<S> {
     let f = step.gradient;
     let square = tensor::transposed_product(f, f);
@@ -104,12 +105,13 @@ pub(super) fn respond<S: Scalar>(moduli: &Moduli, law: &Prony, step: &Step<'_, S
     Response { stress: tensor::product(f, &second), stored, dissipated }
 }
 
-/// e^(−x) and (1 − e^(−x))/x of a step over a relaxation time: what is left of a stress and of a rise within the step.
+/// e^(−x) and (1 − e^(−x))/x for a step of x relaxation times: remaining fractions of a stress and of a linear increase
+/// during the step.
 fn decay(x: f64) -> (f64, f64) {
     if x > 0.0 { ((-x).exp(), -(-x).exp_m1() / x) } else { (1.0, 1.0) }
 }
 
-/// S_iso = μ J^(−2/3) (I − ⅓ tr C C⁻¹).
+/// Isochoric stress S_iso = μ J^(−2/3) (I − ⅓ tr C C⁻¹).
 #[inline(always)]
 fn isochoric_stress<S: Scalar>(m: &Moduli, square: &Tensor<S>, inverse: &Tensor<S>, isochoric: S) -> Tensor<S> {
     let scale = isochoric * m.shear;
@@ -117,7 +119,7 @@ fn isochoric_stress<S: Scalar>(m: &Moduli, square: &Tensor<S>, inverse: &Tensor<
     tensor::plus_identity(&tensor::times(inverse, third), scale)
 }
 
-/// S_iso of the C that was kept.
+/// Isochoric stress S_iso for C of the history.
 #[inline(always)]
 fn old_stress<S: Scalar>(m: &Moduli, kept: &[f64]) -> Tensor<S> {
     let square: Tensor = tensor::constant(kept);
@@ -126,7 +128,7 @@ fn old_stress<S: Scalar>(m: &Moduli, kept: &[f64]) -> Tensor<S> {
     tensor::convert(&stress, S::constant)
 }
 
-/// (CQ):(QC)/(4 g μ), zero for a branch without stiffness.
+/// Stored energy of a branch, (CQ):(QC)/(4 g μ); zero for a branch without stiffness.
 #[inline(always)]
 fn branch_energy<S: Scalar>(modulus: f64, square: &Tensor<S>, stress: &Tensor<S>) -> S {
     if modulus == 0.0 {

@@ -34,7 +34,7 @@ impl Look<'_, '_> {
     /// Own modes: of a body made of particles, and nothing else beside them.
     pub(super) fn own_modes(&mut self) {
         for key in RIGID.into_iter().chain(["mode"]).filter(|k| self.says(k)).collect::<Vec<_>>() {
-            let message = format!("`{key}` says nothing about own modes");
+            let message = format!("`{key}` does not apply to the natural modes of a body");
             self.draft
                 .fail_key(&self.place(key), message)
                 .hint("remove it: `[body.solid]` has masses, stiffness, damping, velocity and gravity");
@@ -76,7 +76,7 @@ impl Look<'_, '_> {
     /// Modes, and nothing of a rigid body beside them.
     pub(super) fn modes(&mut self) {
         for key in RIGID.into_iter().filter(|k| self.says(k)).collect::<Vec<_>>() {
-            let message = format!("`{key}` says nothing about modes");
+            let message = format!("`{key}` does not apply to modes");
             self.draft
                 .fail_key(&self.place(key), message)
                 .hint("give each `[[structure.mode]]` its own, or change `model`");

@@ -111,7 +111,7 @@ fn structures_without_what_they_need_are_refused() {
         &["a typical section needs a 2-D case", "no elastic axis", "no mass", "no moment", "`plunge`", "`pitch`"],
     );
     let mode = "model = \"modal\"\nmass = 3\n[[structure.mode]]\nname = \"a b\"\nfile = \"f\"\nmass = 1\n";
-    told(&structure(mode), &["`mass` says nothing about modes", "cannot be the name of a mode", "has no spring"]);
+    told(&structure(mode), &["`mass` does not apply to modes", "cannot be the name of a mode", "has no spring"]);
     let flap = format!("{ISOGAI}flap = {{ x_beta = 0.1, r_beta2 = 0.1 }}");
     told(&structure(&flap), &["the flap has no hinge", "no spring for `flap`"]);
     told(
