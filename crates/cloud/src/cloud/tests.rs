@@ -141,7 +141,7 @@ fn a_body_beside_a_periodic_side_is_seen_from_the_other_one() {
 fn crevices_are_repaired_in_words() {
     let text = "[[body]]\ncircle = { radius = 0.5 }\n[[body]]\ncircle = { radius = 0.5 }\ntranslate = [1.004, 0]\n[cloud]\nspacing = 0.02";
     let (cloud, diagnosis) = check::<2>(text);
-    assert!(cloud.notes.iter().any(|n| n.contains("first order")) && diagnosis.repairs == cloud.notes);
+    assert!(cloud.notes.iter().any(|n| n.contains("first-order")) && diagnosis.repairs == cloud.notes);
     assert!(diagnosis.notes.iter().any(|n| n.contains("face another wall")), "{:?}", diagnosis.notes);
 }
 
