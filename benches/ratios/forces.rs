@@ -21,7 +21,7 @@ pub(super) fn forces() {
     let balance = column(&parsed(&format!("{SECTION}{FORCES}pitch = \"0.25 deg\"\n")));
     let mut session = Session::open(&parsed(&format!("{SECTION}{MARCH}")), "").unwrap();
     session.solve(&mut Silent).unwrap();
-    let march = session.summary().map_or(0.0, |s| s.cpu_seconds);
+    let march = session.summary().map_or(0.0, |s| s.cost.cpu_seconds);
     // a column by balance is solved for two amplitudes
     tell(
         "harmonic balance over a column of forces by a linear system",

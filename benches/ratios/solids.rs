@@ -51,7 +51,7 @@ fn step(text: &str) -> f64 {
     let least = |_| {
         let mut session = Session::open(&parsed(text), ".").unwrap();
         let spent = once(|| drop(session.solve(&mut Silent)));
-        spent / session.summary().unwrap().iterations as f64
+        spent / session.summary().unwrap().convergence.iterations as f64
     };
     (0..3).map(least).fold(f64::INFINITY, f64::min)
 }

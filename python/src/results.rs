@@ -105,11 +105,11 @@ impl Result {
         let told = serde_json::to_value(&summary).unwrap_or_default();
         Ok(Self {
             title: case.title.clone(),
-            cl: summary.loads.cl,
-            cd: summary.loads.cd,
-            cm: summary.loads.cm,
-            loads_error: summary.loads_error.map(bars).transpose()?,
-            converged: summary.converged,
+            cl: summary.loads.total.cl,
+            cd: summary.loads.total.cd,
+            cm: summary.loads.total.cm,
+            loads_error: summary.grid.loads_error.map(bars).transpose()?,
+            converged: summary.convergence.converged,
             summary: python_of(py, &told)?,
             history: history.unbind(),
             fields: arrays(py, found.field, d)?.unbind(),

@@ -13,10 +13,10 @@ use super::session::Session;
 use crate::case::Case;
 use crate::observe::error_bars::Part;
 use crate::problem::RunError;
+use crate::record::summary::Summary;
 use crate::study::Monitor;
 use crate::study::error_bars::{Further, FurtherRuns};
 use crate::study::record::Log;
-use crate::study::record::summary::Summary;
 
 /// Folder of the further runs in that of a run.
 const FOLDER: &str = "coarser";

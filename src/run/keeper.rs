@@ -10,6 +10,7 @@ use crate::coupling::SolidSnapshot;
 use crate::geometry::Surface;
 use crate::observe::structure::StructureSample;
 use crate::problem::RunError;
+use crate::record::summary::Summary;
 use crate::scheme::Work;
 use crate::study::PeriodFields;
 use crate::study::keeper::{Camera, Earlier, End, Keeper, Tables};
@@ -17,7 +18,6 @@ use crate::study::look::GasView;
 use crate::study::record::Log;
 use crate::study::record::polar::PolarRecord;
 use crate::study::record::saved::{FILE, Saved};
-use crate::study::record::summary::Summary;
 
 /// Keeps the study of a gas in a folder.
 pub(super) struct FolderKeeper {
@@ -138,7 +138,7 @@ impl<const D: usize> Camera<D> for Fields {
     fn end(&self, end: End<'_, D>, summary: &mut Summary, log: &Log<'_>) -> Result<(), RunError> {
         let End { found, field, walls, solid, chosen, refined } = end;
         if chosen {
-            folder::put_cloud(&summary.cloud, refined, &self.out)?;
+            folder::put_cloud(&summary.conditions.cloud, refined, &self.out)?;
         }
         files::write_all(found, summary, (field, walls), solid, log, &self.out)?;
         log.keeper.as_ref().map_or(Ok(()), |keeper| keeper.describe())?;

@@ -84,7 +84,7 @@ pub(super) fn fly<const D: usize>(
     let found = session.summary()?;
     let following = followed(case, surface?, session.field()?).unwrap_or(1.0);
     let step = step::<D>(case, input, (factor, period));
-    Some(Pilot { particles: found.particles as f64, seconds: found.wall_seconds, following, step })
+    Some(Pilot { particles: found.convergence.particles as f64, seconds: found.cost.wall_seconds, following, step })
 }
 
 /// Seconds of an implicit step in time on the coarser cloud with `factor` times the spacing; `None` where there are none, or too few were

@@ -114,7 +114,7 @@ impl Session {
 
     /// Loads on all bodies, of pressure and friction; `None` before it is solved.
     pub fn loads(&self) -> Option<Coefficients> {
-        self.summary().map(|s| s.loads)
+        self.summary().map(|s| s.loads.total)
     }
 
     /// The solution on all particles, in the units of the case; `None` before it is solved.

@@ -22,7 +22,6 @@ use super::look::{GasView, load_axes, momentum};
 use super::recipe;
 use super::record::Log;
 use super::record::family;
-use super::record::polar::PolarPoint;
 use super::record::saved::{Kept, raised};
 use super::setup::Solver;
 use super::stage::Stage;
@@ -32,6 +31,7 @@ use crate::cloud::sources::Source;
 use crate::observe::convergence::Convergence;
 use crate::problem::coarser::times_the_spacing;
 use crate::problem::{ProblemIn, RunError, in_stream, spacing};
+use crate::record::summary::PolarPoint;
 use crate::scheme::HasGas;
 use crate::system::{Instant, System};
 

@@ -1,5 +1,4 @@
 //! What makes the loads of a finished run doubtful.
-use super::record::summary::Summary;
 use super::solids::von_mises;
 use crate::case::Case;
 use crate::coupling::SolidSnapshot;
@@ -7,6 +6,7 @@ use crate::geometry::Surface;
 use crate::observe::convergence::LEAST;
 use crate::problem;
 use crate::problem::spacing;
+use crate::record::summary::Summary;
 
 /// Part of a load that its two evaluations may differ by.
 const DISAGREEMENT: f64 = 0.05;
@@ -21,7 +21,7 @@ pub(crate) fn told<const D: usize>(
     largest: [f64; 2],
     solid: Option<&SolidSnapshot<'_, D>>,
 ) -> Vec<String> {
-    let on = Case { cloud: s.cloud.clone(), ..case.clone() };
+    let on = Case { cloud: s.conditions.cloud.clone(), ..case.clone() };
     let rough = spacing::asked(case).map_or_else(Vec::new, |_| problem::rough(&on, surface));
     of_loads(case, s, largest).into_iter().chain(rough).chain(solid.and_then(of_solid)).collect()
 }
@@ -37,8 +37,8 @@ fn of_loads(case: &Case, s: &Summary, largest: [f64; 2]) -> Vec<String> {
         Some(_) => "allow more `accuracy.particles`",
         None => "take a finer `spacing` or more `layers`",
     };
-    let wall = s.loads;
-    if let Some(through) = s.loads_momentum_balance {
+    let wall = s.loads.total;
+    if let Some(through) = s.loads.momentum_balance {
         // a load of a march may pass through zero
         let pairs = [
             ("CL", wall.cl, through.cl, LEAST[0].max(largest[0])),
@@ -59,7 +59,7 @@ fn of_loads(case: &Case, s: &Summary, largest: [f64; 2]) -> Vec<String> {
     if marched {
         return doubts;
     }
-    let allowed = NEGATIVE_DRAG - s.loads_error.map_or(0.0, |bar| bar.cd);
+    let allowed = NEGATIVE_DRAG - s.grid.loads_error.map_or(0.0, |bar| bar.cd);
     if !case.flow.is_viscous() && wall.cd < allowed {
         doubts.push(format!(
             "the drag of a gas without viscosity is negative, CD {:.5}: the cloud is too coarse for it; {finer}",

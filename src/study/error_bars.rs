@@ -14,12 +14,12 @@ use serde_json::Value;
 use super::flow::{self, Origin, Way};
 use super::monitor::{Monitor, Quiet};
 use super::record::Log;
-use super::record::summary::Summary;
 use super::solution::Solution;
 use crate::case::{Accuracy, Case, HarmonicCount, LoadErrors, RungeKutta, Temporal};
 use crate::observe::error_bars::{ErrorBars, Measured, NOT_PERIODIC, OtherRun, Part, Window};
 use crate::problem::coarser::{COARSER, coarser};
 use crate::problem::{Problem, RunError};
+use crate::record::summary::Summary;
 
 /// Half width over what a number changes by from twice the spacing: three times what errors of second order leave (Roache 1994), and twice
 /// what those of first order do, which captured shocks make.
@@ -102,7 +102,8 @@ impl Further<'_> {
         let Some(asked) = case.accuracy.filter(|_| case.is_unsteady()) else { return Ok(true) };
         let Some(measured) = log.measured() else { return Ok(true) };
         let parts = parts(case, asked.error);
-        let missed = f64::from(summary.unconverged_steps) / (summary.iterations as f64).max(1.0);
+        let missed =
+            f64::from(summary.convergence.unconverged_steps) / (summary.convergence.iterations as f64).max(1.0);
         let (mut runs, mut untold) = (Vec::new(), why_none((summary.succeeded(), missed), balances(case), &measured));
         for part in &parts {
             if untold.is_some() {
@@ -123,7 +124,7 @@ impl Further<'_> {
             log.warn(&format!("no error bars are told: {why}"));
         }
         if !parts.is_empty() {
-            summary.spent_on_bars(log.seconds());
+            summary.cost.spent_on_bars(log.seconds());
         }
         summary.error_bars = Some(found);
         Ok(true)
@@ -197,7 +198,7 @@ fn other(part: Part, case: &Case, summary: &Summary) -> Result<Other, String> {
             let why = "no cloud with twice the spacing fits into the domain, or `[adapt]` makes another cloud of each spacing";
             let case = coarser(&alike, COARSER).ok_or(why)?;
             let words = "on a cloud with twice the spacing".into();
-            Ok(Other { part, case, ratio: COARSER, factor: OF_CLOUD[usize::from(summary.supersonic)], words })
+            Ok(Other { part, case, ratio: COARSER, factor: OF_CLOUD[usize::from(summary.grid.supersonic)], words })
         }
         Part::Step => {
             let (ratio, order) = stepped(&mut alike)?;
@@ -205,8 +206,8 @@ fn other(part: Part, case: &Case, summary: &Summary) -> Result<Other, String> {
             Ok(Other { part, case: alike, ratio, factor, words: format!("with {ratio} times the step in time") })
         }
         Part::Harmonics => {
-            let own = summary.harmonic_balance.as_ref().map_or(1, |b| b.harmonics);
-            let moved = summary.first_harmonics.iter().map(|h| h.harmonic).max().unwrap_or(1);
+            let own = summary.periodic.harmonic_balance.as_ref().map_or(1, |b| b.harmonics);
+            let moved = summary.periodic.first_harmonics.iter().map(|h| h.harmonic).max().unwrap_or(1);
             // the other balance has the second harmonic of the motion too, which is told
             let n = if own > TOLD * moved { own - 1 } else { own + 1 };
             if n > MOST_HARMONICS {

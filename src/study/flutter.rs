@@ -292,9 +292,9 @@ impl Place<'_> {
         let Some(mut flow) = flow::steady(&problem, share, monitor)? else { return Ok(None) };
         let Some(mut at) = self.about(&mut *flow, (stream, cycles))? else { return Ok(None) };
         let Ok(Solution { summary, .. }) = flow.conclude(None)? else { return Ok(None) };
-        at.steady = [summary.loads.cl, summary.loads.cd, summary.loads.cm];
-        at.orders = summary.residual_drop.unwrap_or(0.0);
-        (at.particles, at.cpu_seconds) = (summary.particles, summary.cpu_seconds);
+        at.steady = [summary.loads.total.cl, summary.loads.total.cd, summary.loads.total.cm];
+        at.orders = summary.convergence.residual_drop.unwrap_or(0.0);
+        (at.particles, at.cpu_seconds) = (summary.convergence.particles, summary.cost.cpu_seconds);
         if !summary.succeeded() {
             at.warn(("the steady flow did not converge: forces about it are doubtful".into(), remedy::STEADY));
         }

@@ -1,9 +1,8 @@
 //! What a run has found when it is over: loads, ledgers, errors, the wall.
-use super::look::friction::{Separation, friction_load, separations, wall_friction};
-use super::look::{WakePlane, WallSnapshot, hinge_moments, pressure_load, tip_vortex, totals};
+use super::look::friction::{friction_load, separations, wall_friction};
+use super::look::{WallSnapshot, hinge_moments, pressure_load, tip_vortex, totals};
 use super::record::family;
-use super::record::reference::ReferenceValues;
-use super::record::summary::{Clock, FILES, FreeStream, Ledger, Reclouding, Summary};
+use super::record::work::Clock;
 use super::record::{Log, Record};
 use crate::case::{Case, Initial};
 use crate::geometry::Surface;
@@ -15,6 +14,10 @@ use crate::observe::strips::{RootLoads, Strips};
 use crate::observe::usage::peak_bytes;
 use crate::physics::n_variables;
 use crate::problem::numerics;
+use crate::record::summary::{
+    Conditions, Cost, FILES, FreeStream, GridConvergence, Ledger, Loads, Periodic, Progress, Reclouding,
+    ReferenceValues, Separation, Structures, Summary, WakePlane,
+};
 use crate::scheme::{Fluid, View};
 use crate::system::System;
 use crate::verify::truth::FieldTruth;
@@ -117,82 +120,131 @@ fn reclouding<const D: usize>(record: &Record) -> Option<Reclouding> {
     })
 }
 
+/// Loads of a motion that repeats.
+fn periodic(log: &Log<'_>) -> Periodic {
+    let record = &log.record;
+    Periodic {
+        harmonic_balance: record.balance.clone(),
+        generalised_forces: record.forces.clone(),
+        periodic_change: log.case_period().and_then(|p| record.trace.change(p)),
+        first_harmonics: log.case_period().map_or_else(Vec::new, |p| record.trace.first_harmonics(p)),
+        momentum_of_period: log.case_period().and_then(|p| record.moments.last(p)),
+        last_period: log.case_period().and_then(|p| record.trace.last_period(p)),
+        periodic_loads: log.case_period().and_then(|p| record.trace.periodic_loads(p)),
+        lift_cycles: record.trace.cycles(),
+    }
+}
+
 impl<const D: usize> Found<'_, D> {
     /// The last line of the run; `state` is that of the solver.
     pub(crate) fn summary(&self, log: &Log<'_>, state: &[f64], spent: &Spent<'_>) -> Summary {
-        let (case, fluid, record) = (self.case, self.view.fluid, &log.record);
-        let (pressure, friction) = self.wall_loads(|_| true);
-        let loads = self.axes.coefficients(&together(&pressure, &friction));
-        let part = |load: &Load| fluid.viscous_model.as_ref().map(|_| self.axes.coefficients(load));
-        let balance = self.balance.unwrap_or_default();
-        let through = self.axes.coefficients(&balance.load);
+        let (case, record) = (self.case, &log.record);
         let marches = case.is_unsteady() && record.balance.is_none();
-        let ledger = match numerics::balance(case) {
-            Some(_) => None,
-            None if marches => drift(&self.view, state, &record.start_totals),
-            None => Some(self.steady_ledger(&balance, &loads, &through)),
-        };
-        let [cpu, wall] = log.seconds();
-        let n = fluid.discretisation.cloud.n_real();
         let family = family::found(case, record);
         Summary {
-            event: "summary",
+            conditions: self.conditions(log),
+            convergence: self.progress(log, state, marches),
+            loads: self.loads(),
+            grid: GridConvergence {
+                loads_error: family.as_ref().map(Convergence::half_widths),
+                grid_convergence: family,
+                supersonic: self.is_supersonic(),
+            },
+            // further runs tell them
+            error_bars: None,
+            polar: record.polar.points.clone(),
+            periodic: periodic(log),
+            structures: Structures {
+                structure: log.structure_summaries(),
+                swings: case.swing().map_or_else(Vec::new, |period| log.swings(period.0)),
+                solid: None,
+            },
+            cost: self.cost(log, spent),
+        }
+    }
+
+    fn conditions(&self, log: &Log<'_>) -> Conditions {
+        let (case, record) = (self.case, &log.record);
+        Conditions {
             case: case.title.clone(),
             run: log.keeper.as_ref().map_or_else(String::new, |keeper| keeper.name()),
-            particles: n,
-            iterations: record.iteration,
-            residual_drop: (!marches && !record.began_steady).then(|| -record.drop.log10()),
-            converged: record.goal_reached(marches),
-            cpu_seconds: cpu,
-            wall_seconds: wall,
-            peak_bytes: peak_bytes(),
-            work_units: record.work.total as f64 / self.view.cloud().n_fluid as f64,
-            free_stream: FreeStream { state: case.flow.reference(), gamma: case.flow.gamma },
-            chord: self.axes.chord,
-            cloud: case.cloud.clone(),
-            loads_at: case.is_unsteady().then_some(record.time),
             mach: case.flow.reference().mach,
             alpha_deg: case.flow.alpha.degrees(),
             reynolds: case.flow.reynolds_number(self.axes.chord),
+            free_stream: FreeStream::of(&case.flow.reference(), case.flow.gamma),
+            chord: self.axes.chord,
             reference: self.surface.map(|_| ReferenceValues::of::<D>(case, &self.axes)),
-            loads,
-            loads_pressure: part(&pressure),
-            loads_friction: part(&friction),
+            cloud: case.cloud.clone(),
+            loads_at: case.is_unsteady().then_some(record.time),
+        }
+    }
+
+    fn progress(&self, log: &Log<'_>, state: &[f64], marches: bool) -> Progress {
+        let record = &log.record;
+        Progress {
+            particles: self.particles(),
+            iterations: record.iteration,
+            residual_drop: (!marches && !record.began_steady).then(|| -record.drop.log10()),
+            converged: record.goal_reached(marches),
+            time: record.time,
+            linear_iterations: record.linear,
+            unconverged_steps: record.unconverged,
+            halved_steps: record.halved,
+            ledger: self.ledger(log, state, marches),
+            re_clouding: reclouding::<D>(record),
+            adapt_change: last_change(&record.cycles),
+            error_l2_density: self.exact_error(log.units.solver_time(record.time)),
+            warnings: Vec::new(),
+        }
+    }
+
+    /// Particles, images left out.
+    fn particles(&self) -> usize {
+        self.view.fluid.discretisation.cloud.n_real()
+    }
+
+    /// What was lost; `None` for a harmonic balance.
+    fn ledger(&self, log: &Log<'_>, state: &[f64], marches: bool) -> Option<Ledger> {
+        match numerics::balance(self.case) {
+            Some(_) => None,
+            None if marches => drift(&self.view, state, &log.record.start_totals),
+            None => {
+                let (balance, (pressure, friction)) = (self.balance.unwrap_or_default(), self.wall_loads(|_| true));
+                let wall = self.axes.coefficients(&together(&pressure, &friction));
+                Some(self.steady_ledger(&balance, &wall, &self.axes.coefficients(&balance.load)))
+            }
+        }
+    }
+
+    fn loads(&self) -> Loads {
+        let (case, fluid) = (self.case, self.view.fluid);
+        let (pressure, friction) = self.wall_loads(|_| true);
+        let total = self.axes.coefficients(&together(&pressure, &friction));
+        let part = |load: &Load| fluid.viscous_model.as_ref().map(|_| self.axes.coefficients(load));
+        Loads {
+            total,
+            pressure: part(&pressure),
+            friction: part(&friction),
+            momentum_balance: self.balance.map(|balance| self.axes.coefficients(&balance.load)),
             separation: self.separations(),
-            loads_momentum_balance: self.balance.map(|_| through),
+            tip_vortex: tip_vortex(case, &self.view, self.surface, [self.axes.chord, total.cl]),
             root_loads: self.root_loads(),
             hinge_moments: hinge_moments(case, &self.view, &self.names.bodies),
             span_load: self.span_load.clone(),
             wake_planes: self.wake.clone(),
-            tip_vortex: tip_vortex(case, &self.view, self.surface, [self.axes.chord, loads.cl]),
-            harmonic_balance: record.balance.clone(),
-            generalised_forces: record.forces.clone(),
-            structure: log.structure_summaries(),
-            solid: None,
-            swings: case.swing().map_or_else(Vec::new, |period| log.swings(period.0)),
-            ledger,
-            time: record.time,
-            unconverged_steps: record.unconverged,
-            halved_steps: record.halved,
-            re_clouding: reclouding::<D>(record),
-            first_harmonics: log.case_period().map_or_else(Vec::new, |p| record.trace.first_harmonics(p)),
-            momentum_of_period: log.case_period().and_then(|p| record.moments.last(p)),
-            last_period: log.case_period().and_then(|p| record.trace.last_period(p)),
-            periodic_loads: log.case_period().and_then(|p| record.trace.periodic_loads(p)),
-            lift_cycles: record.trace.cycles(),
-            periodic_change: log.case_period().and_then(|p| record.trace.change(p)),
+        }
+    }
+
+    fn cost(&self, log: &Log<'_>, spent: &Spent<'_>) -> Cost {
+        let (fluid, record, n) = (self.view.fluid, &log.record, self.particles());
+        let [cpu, wall] = log.seconds();
+        Cost {
+            cpu_seconds: cpu,
+            wall_seconds: wall,
+            peak_bytes: peak_bytes(),
+            work_units: record.work.total as f64 / self.view.cloud().n_fluid as f64,
             bytes_per_particle: bytes_of(fluid, record.bytes) as f64 / n as f64,
             cpu_ms_per_particle: 1e3 * cpu / n as f64,
-            linear_iterations: record.linear,
-            error_l2_density: self.exact_error(log.units.solver_time(record.time)),
-            loads_error: family.as_ref().map(Convergence::half_widths),
-            grid_convergence: family,
-            supersonic: self.is_supersonic(),
-            // further runs tell them
-            error_bars: None,
-            polar: record.polar.points.clone(),
-            warnings: Vec::new(),
-            adapt_change: last_change(&record.cycles),
             phases: spent.phases(),
         }
     }

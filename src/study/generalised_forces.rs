@@ -38,7 +38,7 @@ pub fn forces(flow: &SteadyFlow<'_>, reduced_frequencies: &[f64]) -> Result<Gene
         "generalised forces without a `[structure]`",
         "add one: forces are those on its coordinates",
     )?;
-    let rate = 2.0 * flow.summary().mach / flow.summary().chord;
+    let rate = 2.0 * flow.summary().conditions.mach / flow.summary().conditions.chord;
     let (mut all, mut residual) = (Vec::new(), 0.0_f64);
     for k in in_order(reduced_frequencies) {
         let found = source.forces_unless(rate * k, &|| false).ok_or(RunError::NoStage)?;

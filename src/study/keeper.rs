@@ -9,7 +9,6 @@ use super::look::{GasView, Snapshot, WallSnapshot};
 use super::record::crosscheck::Twofold;
 use super::record::polar::PolarRecord;
 use super::record::saved::Saved;
-use super::record::summary::Summary;
 use super::record::trace::Trace;
 use super::record::{IterationHistory, Log};
 use super::studies::PeriodFields;
@@ -19,6 +18,7 @@ use crate::geometry::Surface;
 use crate::math::parallel::sweep_each;
 use crate::observe::structure::{StructureNames, StructureSample, StructureTable};
 use crate::problem::RunError;
+use crate::record::summary::Summary;
 use crate::scheme::Work;
 
 /// Keeps a study of a gas.

@@ -45,19 +45,16 @@ mod watch;
 
 pub(crate) use studies::PeriodFields;
 
+pub use crate::record::summary::{
+    Apart, BalanceReport, Change, FirstHarmonics, GeneralisedForce, LastPeriod, Ledger, LoadCrosscheck, LoadsApart,
+    MarchingCheck, PeriodicLoads, PolarPoint, ProbeEnd, Reclouding, ReferenceValues, Separation, SolidEnd, Summary,
+    TipVortex, WakePlane,
+};
 pub use cost::Cost;
 pub use generalised_forces::{GeneralisedForces, forces};
-pub use look::forces::GeneralisedForce;
-pub use look::friction::Separation;
-pub use look::{Snapshot, TipVortex, WakePlane, WallSnapshot};
+pub use look::{Snapshot, WallSnapshot};
 pub use monitor::{MarchTick, Monitor, Silent, Tick};
 pub use record::IterationHistory;
-pub use record::crosscheck::{Apart as LoadsApart, LoadCrosscheck};
-pub use record::polar::PolarPoint;
-pub use record::reference::ReferenceValues;
-pub use record::solid_end::{ProbeEnd, SolidEnd};
-pub use record::summary::{Apart, BalanceReport, Ledger, MarchingCheck, Reclouding, Summary};
-pub use record::trace::{Change, FirstHarmonics, LastPeriod, PeriodicLoads};
 pub use solids::{
     Ended as SolidOutcome, ModeRow, PeriodicRow, ProbeHarmonic, ProbeRow, SolidLedger, SolidSolution, SolidSummary,
 };

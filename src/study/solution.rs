@@ -1,7 +1,7 @@
 //! What a run in memory leaves.
 use super::look::{Snapshot, WallSnapshot};
 use super::record::IterationHistory;
-use super::record::summary::Summary;
+use crate::record::summary::Summary;
 use crate::verify::Loops;
 
 /// Solution of a case: loads, fields, history.

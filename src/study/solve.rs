@@ -2,7 +2,6 @@
 use super::error_bars::solved;
 use super::flutter::{InMemory, boundary, planned};
 use super::monitor::{Monitor, Silent};
-use super::record::polar::PolarPoint;
 use super::refuse;
 use super::solids::{self, Ended, SolidSolution};
 use super::solution::Solution;
@@ -10,6 +9,7 @@ use crate::case::Temporal;
 use crate::observe::convergence::Convergence;
 use crate::problem::{Problem, RunError, spacing};
 use crate::record::flutter::{Boundary, LimitCycle};
+use crate::record::summary::PolarPoint;
 
 /// Marches the flow of a problem with `[time.dual]` or `[time.explicit]` in time, with the error bars that it asks for.
 pub fn march(problem: &Problem) -> Result<Solution, RunError> {
@@ -82,7 +82,7 @@ pub fn family(problem: &Problem) -> Result<Option<Convergence>, RunError> {
         "add `[accuracy]`, or leave out `cloud.spacing`",
     )?;
     let solution = solved(problem, &mut Silent)?.ok_or(RunError::NoStage)?;
-    Ok(solution.summary.grid_convergence)
+    Ok(solution.summary.grid.grid_convergence)
 }
 
 /// The flutter boundary that the table `[flutter]` asks for, with the limit cycles of `[lco]`.

@@ -3,12 +3,12 @@ use super::flow::{self, Flow, Origin, Way};
 use super::look::{Snapshot, WallSnapshot};
 use super::monitor::{Monitor, Silent};
 use super::record::IterationHistory;
-use super::record::summary::Summary;
 use super::solution::Solution;
 use super::studies::ForceSource;
 use crate::observe::convergence::Convergence;
 use crate::observe::loads::Coefficients;
 use crate::problem::{Problem, RunError};
+use crate::record::summary::Summary;
 
 /// A steady flow with its equations, so that it can be asked for forces of small motions.
 pub struct SteadyFlow<'a> {
@@ -63,23 +63,23 @@ pub fn steady_with<'a>(problem: &Problem, monitor: &'a mut dyn Monitor) -> Resul
 impl SteadyFlow<'_> {
     /// Loads on all bodies, of pressure and friction.
     pub fn loads(&self) -> Coefficients {
-        self.solution.summary.loads
+        self.solution.summary.loads.total
     }
 
     /// How far the residual fell.
     pub fn convergence(&self) -> FlowConvergence {
-        let Summary { converged, residual_drop, iterations, warnings, .. } = &self.solution.summary;
+        let progress = &self.solution.summary.convergence;
         FlowConvergence {
-            converged: *converged != Some(false),
-            orders: *residual_drop,
-            iterations: *iterations,
-            warnings: warnings.clone(),
+            converged: progress.converged != Some(false),
+            orders: progress.residual_drop,
+            iterations: progress.iterations,
+            warnings: progress.warnings.clone(),
         }
     }
 
     /// How the loads converge on the family of clouds; `None` where the case gives one cloud.
     pub fn grid_convergence(&self) -> Option<&Convergence> {
-        self.solution.summary.grid_convergence.as_ref()
+        self.solution.summary.grid.grid_convergence.as_ref()
     }
 
     /// The solution on all particles, in the units of the case.

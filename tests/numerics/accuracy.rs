@@ -26,9 +26,14 @@ fn exact_lift_lies_within_the_error_bar() {
     // the full potential equation in free air, exact to 1e-8, closed section of unit chord
     for (mach, alpha, exact) in [(0.5, 2.0, 0.28653976), (0.3, 4.0, 0.50954894)] {
         let s = solved(mach, alpha);
-        let (bar, family) = (s.loads_error.unwrap(), s.grid_convergence.as_ref().unwrap());
-        assert!((s.loads.cl - exact).abs() < bar.cl, "Mach {mach}: {} ± {} for {exact}", s.loads.cl, bar.cl);
-        assert!(bar.cl < 0.002 * exact && s.loads.cd.abs() < 1e-4, "Mach {mach}: {bar:?}, {:?}", s.loads);
+        let (bar, family) = (s.grid.loads_error.unwrap(), s.grid.grid_convergence.as_ref().unwrap());
+        assert!(
+            (s.loads.total.cl - exact).abs() < bar.cl,
+            "Mach {mach}: {} ± {} for {exact}",
+            s.loads.total.cl,
+            bar.cl
+        );
+        assert!(bar.cl < 0.002 * exact && s.loads.total.cd.abs() < 1e-4, "Mach {mach}: {bar:?}, {:?}", s.loads);
         assert_eq!(family.clouds.len(), 3);
         assert!(family.clouds[2].particles <= 12_000);
         assert!(
@@ -38,7 +43,7 @@ fn exact_lift_lies_within_the_error_bar() {
         let lift = order(&|k| family.clouds[k].cl - exact);
         let drag = order(&|k| family.clouds[k].cd);
         assert!(lift > 1.8 && drag > 1.8, "Mach {mach}: order of the lift {lift}, of the drag {drag}");
-        assert!(s.converged == Some(true));
+        assert!(s.convergence.converged == Some(true));
     }
 }
 
@@ -51,14 +56,14 @@ fn bars_in_space_take_four_clouds_within_the_particles_allowed() {
     let mut session = Session::open(&case, ".").unwrap_or_else(|e| panic!("{e}"));
     session.solve(&mut Silent).unwrap_or_else(|e| panic!("{e}"));
     let s = session.summary().unwrap();
-    let (bar, family) = (s.loads_error.unwrap(), s.grid_convergence.as_ref().unwrap());
+    let (bar, family) = (s.grid.loads_error.unwrap(), s.grid.grid_convergence.as_ref().unwrap());
     assert_eq!(family.clouds.len(), 4);
     let finest = family.clouds[3];
     assert!(finest.particles <= 14_000, "{}", finest.particles);
     // Prandtl's lifting line: CL²/(π A) in an elliptic distribution
-    let induced = s.loads.cl.powi(2) / (std::f64::consts::PI * 4.0);
-    assert!((s.loads.cd - induced).abs() < bar.cd, "CD {} ± {} for {induced}", s.loads.cd, bar.cd);
-    assert!(finest.spurious_drag.unwrap() > 0.5 * (s.loads.cd - induced), "{finest:?}");
+    let induced = s.loads.total.cl.powi(2) / (std::f64::consts::PI * 4.0);
+    assert!((s.loads.total.cd - induced).abs() < bar.cd, "CD {} ± {} for {induced}", s.loads.total.cd, bar.cd);
+    assert!(finest.spurious_drag.unwrap() > 0.5 * (s.loads.total.cd - induced), "{finest:?}");
 }
 
 #[test]
@@ -69,9 +74,14 @@ fn momentum_balances_where_the_zone_runs_along_a_bow_shock() {
         let mut session = Session::open(&case, ".").unwrap_or_else(|e| panic!("{e}"));
         session.solve(&mut Silent).unwrap_or_else(|e| panic!("{e}"));
         let s = session.summary().unwrap();
-        let through = s.loads_momentum_balance.unwrap();
-        assert!((through.cd / s.loads.cd - 1.0).abs() < 0.015, "Mach {mach}: {} and {}", s.loads.cd, through.cd);
-        assert!(s.ledger.unwrap().mass.abs() < 0.01, "Mach {mach}: {:?}", s.ledger);
+        let through = s.loads.momentum_balance.unwrap();
+        assert!(
+            (through.cd / s.loads.total.cd - 1.0).abs() < 0.015,
+            "Mach {mach}: {} and {}",
+            s.loads.total.cd,
+            through.cd
+        );
+        assert!(s.convergence.ledger.unwrap().mass.abs() < 0.01, "Mach {mach}: {:?}", s.convergence.ledger);
     }
 }
 
@@ -85,25 +95,25 @@ fn momentum_balances_where_sides_cut_the_zone() {
     let mut session = Session::open(&case, ".").unwrap_or_else(|e| panic!("{e}"));
     session.solve(&mut Silent).unwrap_or_else(|e| panic!("{e}"));
     let s = session.summary().unwrap();
-    let through = s.loads_momentum_balance.unwrap();
-    assert!((through.cl / s.loads.cl - 1.0).abs() < 0.01, "{:?} and {through:?}", s.loads);
-    assert!((through.cd / s.loads.cd - 1.0).abs() < 0.01, "{:?} and {through:?}", s.loads);
-    assert!(s.ledger.unwrap().mass.abs() < 1e-4, "{:?}", s.ledger);
+    let through = s.loads.momentum_balance.unwrap();
+    assert!((through.cl / s.loads.total.cl - 1.0).abs() < 0.01, "{:?} and {through:?}", s.loads);
+    assert!((through.cd / s.loads.total.cd - 1.0).abs() < 0.01, "{:?} and {through:?}", s.loads);
+    assert!(s.convergence.ledger.unwrap().mass.abs() < 1e-4, "{:?}", s.convergence.ledger);
 }
 
 #[test]
 fn a_symmetric_section_keeps_its_lift_of_zero() {
     let s = solved(0.8, 0.0);
-    assert!(s.loads.cl.abs() < 1e-6 && s.loads_error.unwrap().cl < 1e-5, "{:?}", s.loads);
+    assert!(s.loads.total.cl.abs() < 1e-6 && s.grid.loads_error.unwrap().cl < 1e-5, "{:?}", s.loads);
 }
 
 #[test]
 fn adapted_clouds_of_a_family_are_refined_at_the_shock_and_have_an_error_bar() {
     let [plain, adapted] = ["", "[adapt]\ncycles = 1\n"].map(|more| solved_with(0.8, 1.25, more));
-    let [even, fine] = [&plain, &adapted].map(|s| s.grid_convergence.clone().unwrap().clouds);
+    let [even, fine] = [&plain, &adapted].map(|s| s.grid.grid_convergence.clone().unwrap().clouds);
     assert!(fine[0].particles == even[0].particles && fine[2].particles > even[2].particles, "{fine:?}");
-    let apart = (plain.loads.cl - adapted.loads.cl).abs();
-    assert!(apart < plain.loads_error.unwrap().cl + adapted.loads_error.unwrap().cl, "{apart}");
+    let apart = (plain.loads.total.cl - adapted.loads.total.cl).abs();
+    assert!(apart < plain.grid.loads_error.unwrap().cl + adapted.grid.loads_error.unwrap().cl, "{apart}");
 }
 
 /// Stops a run some iterations after a note that begins with these words.

@@ -70,6 +70,10 @@ fn a_steady_flow_has_loads_and_their_convergence() {
     let exact = std::f64::consts::TAU * 1.0924 / 0.75f64.sqrt() * f64::to_radians(2.0);
     assert!((loads.cl / exact - 1.0).abs() < 0.08 && flow.convergence().converged, "{loads:?} {exact}");
     assert!(family.half_widths().cl > 0.0 && !flow.field().points.is_empty());
+    // a summary is read by the types that write it
+    let text = serde_json::to_string(flow.summary()).unwrap();
+    let again: alula::record::summary::Summary = serde_json::from_str(&text).unwrap();
+    assert_eq!(serde_json::to_string(&again).unwrap(), text);
 }
 
 #[test]

@@ -24,7 +24,7 @@ fn standing(case: &Case) -> Vec<f64> {
     let mut session = Session::open(case, std::path::Path::new(".")).unwrap();
     session.solve(&mut Silent).unwrap();
     let summary = session.summary().unwrap();
-    let all = summary.structure.iter().flat_map(|s| &s.coordinates);
+    let all = summary.structures.structure.iter().flat_map(|s| &s.coordinates);
     all.map(|c| c.mean.unwrap()).collect()
 }
 

@@ -290,7 +290,7 @@ fn places(root: &std::path::Path, name: &str) -> alula::run::Places {
 fn a_balance_goes_on_from_an_interruption_from_another_one_and_from_a_march() {
     let root = tempfile::tempdir().unwrap();
     let whole = summary(&section("2"), &places(root.path(), "whole"));
-    assert!(whole.succeeded() && whole.first_harmonics[0].cl[0] > 3.0, "{whole:?}");
+    assert!(whole.succeeded() && whole.periodic.first_harmonics[0].cl[0] > 3.0, "{whole:?}");
     goes_on_to_the_same_bits(root.path(), &whole);
     goes_on_with_other_harmonics(root.path(), &whole);
     begins_with_a_march(root.path(), &whole);
@@ -298,7 +298,7 @@ fn a_balance_goes_on_from_an_interruption_from_another_one_and_from_a_march() {
 
 /// An interrupted balance against one that was not.
 fn goes_on_to_the_same_bits(root: &std::path::Path, whole: &alula::run::Summary) {
-    let stopped = &mut After(whole.iterations - 2, std::cell::Cell::new(0));
+    let stopped = &mut After(whole.convergence.iterations - 2, std::cell::Cell::new(0));
     alula::run::run(&section("2"), &places(root, "cut"), stopped).unwrap();
     alula::run::resume(&root.join("cut"), &mut alula::run::Silent).unwrap();
     let read = |name: &str, file: &str| std::fs::read(root.join(name).join(file)).unwrap();
@@ -311,7 +311,7 @@ fn goes_on_with_other_harmonics(root: &std::path::Path, whole: &alula::run::Summ
     let from = root.join("whole");
     let more = alula::run::run_from(&section("3"), &places(root, "more"), &from, &mut alula::run::Silent).unwrap();
     let alula::run::Outcome::Finished(more) = more else { panic!("interrupted") };
-    let change = more.first_harmonics[0].cl[0] - whole.first_harmonics[0].cl[0];
+    let change = more.periodic.first_harmonics[0].cl[0] - whole.periodic.first_harmonics[0].cl[0];
     assert!(more.succeeded() && change.abs() < 0.01, "{change}");
     let mut other = section("1");
     other.cloud.spacing = Some(alula::case::Length(0.05));
@@ -343,7 +343,7 @@ impl alula::run::Monitor for AtMarch {
 fn begins_with_a_march(root: &std::path::Path, direct: &alula::run::Summary) {
     let case = section("{ number = 2, march = 1 }");
     let marched = summary(&case, &places(root, "marched"));
-    let lift = |s: &alula::run::Summary| s.first_harmonics[0].cl;
+    let lift = |s: &alula::run::Summary| s.periodic.first_harmonics[0].cl;
     let change = (0..2).map(|k| (lift(&marched)[k] - lift(direct)[k]).abs()).fold(0.0, f64::max);
     assert!(marched.succeeded() && change < 2e-3, "{change}");
     alula::run::run(&case, &places(root, "march cut"), &mut AtMarch(false.into())).unwrap();
@@ -356,7 +356,7 @@ fn begins_with_a_march(root: &std::path::Path, direct: &alula::run::Summary) {
 fn a_march_from_the_balance_stays_with_it() {
     let root = tempfile::tempdir().unwrap();
     let found = summary(&section("{ number = 2, check = 1 }"), &places(root.path(), "out"));
-    let after = found.harmonic_balance.and_then(|b| b.march).unwrap();
+    let after = found.periodic.harmonic_balance.and_then(|b| b.march).unwrap();
     let lift = after.cl.unwrap();
     assert_eq!((after.periods, after.unconverged), (1, 0));
     assert!(lift.first_harmonic < 3e-3 && lift.mean.abs() < 1e-3, "{lift:?}");
@@ -376,7 +376,7 @@ fn a_wave_leaves_through_the_end_of_a_tube() {
     let root = tempfile::tempdir().unwrap();
     let found = summary(&crate::common::case(text), &places(root.path(), "tube"));
     // the exact simple wave: 2 · 0.1402100/γ over the displacement 0.1/2π, behind it by 90°
-    let [re, im] = found.first_harmonics[0].cd;
+    let [re, im] = found.periodic.first_harmonics[0].cd;
     assert!(found.succeeded() && (im / -12.58523 - 1.0).abs() < 0.005 && re.abs() < 0.1, "{re} {im}");
     let hot = text.replace("right = [1.0, 0.0, 0.7142857142857143]", "right = [0.9, 0.0, 0.7142857142857143]");
     let hot = hot.replace("position = 10.0", "position = 0.3");

@@ -130,7 +130,7 @@ fn a_body_without_supports_follows_its_motion_and_its_particles_have_the_velocit
     let case = case::read(text, "led").unwrap_or_else(|e| panic!("{e}"));
     let mut session = Session::open(&case, ".").unwrap_or_else(|e| panic!("{e}"));
     session.solve(&mut Silent).unwrap_or_else(|e| panic!("{e}"));
-    let structure = &session.summary().unwrap().structure[0];
+    let structure = &session.summary().unwrap().structures.structure[0];
     let tail = structure.coordinates.iter().find(|c| c.name == "tail_y").unwrap();
     // about the quarter chord, 0.75 from the tail
     let exact = 0.75 * 3f64.to_radians().sin();
@@ -151,7 +151,7 @@ fn slab(material: &str, time: &str) -> f64 {
     let case = case::read(&text, "slab").unwrap_or_else(|e| panic!("{e}"));
     let mut session = Session::open(&case, ".").unwrap_or_else(|e| panic!("{e}"));
     session.solve(&mut Silent).unwrap_or_else(|e| panic!("{e}"));
-    let structure = &session.summary().unwrap().structure[0];
+    let structure = &session.summary().unwrap().structures.structure[0];
     structure.coordinates.iter().find(|c| c.name == "face_x").unwrap().largest
 }
 
@@ -177,7 +177,7 @@ fn a_block_that_drifts_against_a_stop_comes_back() {
     let case = case::read(&text, "stop").unwrap_or_else(|e| panic!("{e}"));
     let mut session = Session::open(&case, ".").unwrap_or_else(|e| panic!("{e}"));
     session.solve(&mut Silent).unwrap_or_else(|e| panic!("{e}"));
-    let structure = &session.summary().unwrap().structure[0];
+    let structure = &session.summary().unwrap().structures.structure[0];
     let face = structure.coordinates.iter().find(|c| c.name == "face_x").unwrap();
     // its face is 0.05 before the stop at first; nothing before it, it would drift by 0.2
     assert!((0.05..0.1).contains(&face.largest), "{face:?}");

@@ -134,8 +134,8 @@ fn a_pitching_march_is_the_same_in_seconds() {
     let runs = both(&stream, [&plain, &air]);
     same_loads(&runs, SAME);
     let [a, b] = &runs;
-    assert_eq!(a.summary.time, 3.0);
-    near(b.summary.time, stream.seconds(3.0));
+    assert_eq!(a.summary.convergence.time, 3.0);
+    near(b.summary.convergence.time, stream.seconds(3.0));
     near(*b.ticks.times.last().unwrap(), stream.seconds(3.0));
 }
 
@@ -152,9 +152,9 @@ fn tables_of_motion_and_periods_are_in_seconds() {
     let runs = both(&stream, [&motion(times), &motion(times.map(|t| stream.seconds(t)))]);
     same_loads(&runs, SAME);
     let [a, b] = &runs;
-    near(b.summary.time, stream.seconds(a.summary.time));
-    near(b.summary.periodic_change.unwrap().periods, 3.0);
-    near(b.summary.last_period.unwrap().peak_cl, a.summary.last_period.unwrap().peak_cl);
+    near(b.summary.convergence.time, stream.seconds(a.summary.convergence.time));
+    near(b.summary.periodic.periodic_change.unwrap().periods, 3.0);
+    near(b.summary.periodic.last_period.unwrap().peak_cl, a.summary.periodic.last_period.unwrap().peak_cl);
 }
 
 #[test]
@@ -173,7 +173,7 @@ fn a_harmonic_balance_is_the_same_by_reduced_frequency_and_in_hertz() {
         let with_unit = rest(&format!("frequency = \"{:?} {}\"", omega / unit.1, unit.0));
         let runs = both(&stream, [&by_number, &with_unit]);
         same_loads(&runs, tolerance);
-        let [x, y] = runs.map(|r| r.summary.first_harmonics[0].cl);
+        let [x, y] = runs.map(|r| r.summary.periodic.first_harmonics[0].cl);
         assert!((x[0] - y[0]).hypot(x[1] - y[1]) < tolerance * x[0].hypot(x[1]), "{x:?} {y:?}");
     }
 }
@@ -216,7 +216,7 @@ fn a_released_section_is_the_same_by_its_numbers_and_in_units() {
     for (air, tolerance) in [(format!("{numbers}{end}"), SAME), (format!("{units}{end}"), NEARLY)] {
         let runs = both(&stream, [&plain, &air]);
         same_loads(&runs, tolerance);
-        let [a, b] = &runs.map(|r| r.summary.structure[0].clone());
+        let [a, b] = &runs.map(|r| r.summary.structures.structure[0].clone());
         for (a, b) in a.coordinates.iter().zip(&b.coordinates) {
             assert!((a.mean.unwrap() - b.mean.unwrap()).abs() < tolerance);
             let omega = a.frequency.unwrap();
@@ -249,7 +249,7 @@ fn a_balance_of_a_shaken_section_has_its_frequency() {
     );
     let runs = both(&stream, [&plain, &air]);
     same_loads(&runs, NEARLY);
-    let [a, b] = &runs.map(|r| r.summary.structure[0].clone());
+    let [a, b] = &runs.map(|r| r.summary.structures.structure[0].clone());
     for (a, b) in a.coordinates.iter().zip(&b.coordinates) {
         near(a.frequency.unwrap(), omega);
         near(b.frequency.unwrap(), omega * stream.sound);
@@ -285,7 +285,7 @@ fn a_balance_writes_two_periods_of_its_structures_in_units_of_the_case() {
         // rates and differences of coordinates, which the power goes by, meet as far as the balance is solved
         assert!((table.gas_power[k] - power).abs() < 1e-5 * strongest, "{} {power}", table.gas_power[k]);
     }
-    let structure = &summary.structure[0];
+    let structure = &summary.structures.structure[0];
     for (c, column) in structure.coordinates.iter().zip([h, a]) {
         near(c.frequency.unwrap(), omega);
         // the rate of one harmonic
@@ -338,11 +338,15 @@ fn interrupted_runs_in_seconds_go_on_to_the_same_tables() {
         assert!(matches!(run(&case, &cut, &mut After(stop, 0)).unwrap(), Outcome::Interrupted { .. }));
         let Outcome::Finished(other) = resume(&cut.out, &mut Silent).unwrap() else { panic!() };
         let table = |at: &Places| std::fs::read_to_string(at.out.join("structure.csv")).unwrap();
-        assert!(table(&whole) == table(&cut) && one.structure == other.structure && one.time == other.time);
+        assert!(
+            table(&whole) == table(&cut)
+                && one.structures.structure == other.structures.structure
+                && one.convergence.time == other.convergence.time
+        );
         // once more from the end, as if the last files had not been written
         std::fs::remove_file(cut.out.join("finished.txt")).unwrap();
         let Outcome::Finished(again) = resume(&cut.out, &mut Silent).unwrap() else { panic!() };
-        assert!(table(&whole) == table(&cut) && one.structure == again.structure);
+        assert!(table(&whole) == table(&cut) && one.structures.structure == again.structures.structure);
     }
 }
 
@@ -375,8 +379,8 @@ fn an_explicit_run_ends_after_as_many_seconds() {
     let explicit = |until: f64| format!("[time.explicit]\nuntil = {until:?}\n");
     let runs = both(&stream, [&explicit(0.4), &explicit(stream.seconds(0.4))]);
     same_loads(&runs, SAME);
-    near(runs[1].summary.time, stream.seconds(0.4));
-    near(runs[1].summary.loads.cd, runs[0].summary.loads.cd);
+    near(runs[1].summary.convergence.time, stream.seconds(0.4));
+    near(runs[1].summary.loads.total.cd, runs[0].summary.loads.total.cd);
 }
 
 #[test]
@@ -393,6 +397,6 @@ fn a_shock_tube_in_pascals_has_the_error_of_that_in_numbers() {
     let states = [[1.0, 0.1, 0.8], [0.5, 0.0, 0.4]];
     let si = states.map(|[d, v, p]| [d * stream.density, v * stream.sound, stream.force(p)]);
     let [a, b] = [tube("gamma = 1.4", states, 0.2), tube(AIR, si, stream.seconds(0.2))];
-    let [a, b] = [a, b].map(|r| r.summary.error_l2_density.unwrap());
+    let [a, b] = [a, b].map(|r| r.summary.convergence.error_l2_density.unwrap());
     assert!(a > 1e-4 && (a / b - 1.0).abs() < 1e-8, "{a:e} {b:e}");
 }

@@ -180,9 +180,9 @@ fn shortfall(summary: &Summary, out: &Path) -> Option<Shortfall> {
             hint: format!("the reasons stand in `{}`", out.join("polar.csv").display()),
         });
     }
-    if summary.is_march() && summary.periodic_change.is_none() {
+    if summary.is_march() && summary.periodic.periodic_change.is_none() {
         return Some(Shortfall {
-            what: format!("the march ended at t = {:.4}, short of its end", summary.time),
+            what: format!("the march ended at t = {:.4}, short of its end", summary.convergence.time),
             hint: "raise `time.explicit.steps`".into(),
         });
     }
@@ -192,12 +192,15 @@ fn shortfall(summary: &Summary, out: &Path) -> Option<Shortfall> {
             hint: "raise `periods` of `[time.dual]` or `[time.explicit]`, or loosen `periodic_tolerance` there".into(),
         });
     }
-    let (table, swings) = match summary.harmonic_balance {
+    let (table, swings) = match summary.periodic.harmonic_balance {
         Some(_) => ("harmonics", "does not repeat with the motion"),
         None => ("steady", "comes to no rest"),
     };
     Some(Shortfall {
-        what: format!("not converged: the residual fell {:.1} orders", summary.residual_drop.unwrap_or_default()),
+        what: format!(
+            "not converged: the residual fell {:.1} orders",
+            summary.convergence.residual_drop.unwrap_or_default()
+        ),
         hint: format!(
             "the residual in the report says why: one that still falls needs more `time.{table}.iterations`, one that swings is of a flow \
              that {swings}, which `[time.dual]` follows"
@@ -254,28 +257,28 @@ fn error_bars(found: &ErrorBars) -> String {
 
 fn describe(s: &Summary, out: &Path) -> String {
     let mut text = s.conditions() + "\n" + &solids(s);
-    text += &match (&s.polar[..], &s.periodic_loads) {
+    text += &match (&s.polar[..], &s.periodic.periodic_loads) {
         ([], Some(loads)) => periodic_loads(loads) + &change_of_period(s) + &instant(s),
         ([], None) => loads(s) + &cycles(s),
         (points, _) => polar(points),
     };
-    if let Some(c) = s.grid_convergence.as_ref().filter(|_| s.polar.is_empty()) {
+    if let Some(c) = s.grid.grid_convergence.as_ref().filter(|_| s.polar.is_empty()) {
         text += &grid_convergence(c);
     }
     text += &s.error_bars.as_ref().map_or_else(String::new, error_bars);
-    if let Some(t) = &s.momentum_of_period {
+    if let Some(t) = &s.periodic.momentum_of_period {
         text += &format!(
             "over the last period momentum and walls differ by CL {:.1e}, CD {:.1e}, CM {:.1e} (rms at {} moments; ranges {:.3}, {:.3}, {:.3})\n",
             t.cl.rms, t.cd.rms, t.cm.rms, t.moments, t.cl.range, t.cd.range, t.cm.range
         );
     }
-    if let Some(c) = &s.adapt_change {
+    if let Some(c) = &s.convergence.adapt_change {
         text += &format!("last adaptation {:+9.5}  {:+9.5}  {:+9.5}\n", c.cl, c.cd, c.cm);
     }
-    if let Some(e) = s.error_l2_density {
+    if let Some(e) = s.convergence.error_l2_density {
         text += &format!("error of density (L2, exact solution) {e:.3e}\n");
     }
-    if let Some(r) = &s.re_clouding {
+    if let Some(r) = &s.convergence.re_clouding {
         let t = &r.transfer;
         text += &format!(
             "cloud built anew {} times: {} particles inserted, {} removed; transfer: mass {:.1e}, momentum {:.1e}, energy {:.1e}\n",
@@ -283,7 +286,7 @@ fn describe(s: &Summary, out: &Path) -> String {
         );
     }
     text += &cost(s);
-    if let Some(l) = &s.ledger {
+    if let Some(l) = &s.convergence.ledger {
         text += &format!("ledger: mass {:.1e}, momentum {:.1e}, energy {:.1e}\n", l.mass, l.momentum, l.energy);
     }
     text + &place(out) + "\n"
@@ -297,7 +300,7 @@ fn place(out: &Path) -> String {
 
 /// What became of bodies made of particles in the units of the case: how far they moved, and the greatest stress.
 fn solids(s: &Summary) -> String {
-    let Some(end) = &s.solid else { return String::new() };
+    let Some(end) = &s.structures.solid else { return String::new() };
     let list = |values: &[f64]| values.iter().map(|x| format!("{x:.4e}")).collect::<Vec<_>>().join(", ");
     let mut text = String::new();
     for probe in &end.probes {
@@ -311,31 +314,31 @@ fn solids(s: &Summary) -> String {
 /// What it took; how far the residual fell where there is one flow that it belongs to.
 fn cost(s: &Summary) -> String {
     let marched = s.is_march();
-    let way = match (s.residual_drop, s.polar.len()) {
-        _ if marched => format!("to t = {:.4}{}", s.time, missed(s)),
+    let way = match (s.convergence.residual_drop, s.polar.len()) {
+        _ if marched => format!("to t = {:.4}{}", s.convergence.time, missed(s)),
         (Some(drop), 0) => format!("residual down {drop:.1} orders"),
         (None, 0) => "nothing to converge: the start is a steady flow".into(),
         (_, points) => format!("{points} points"),
     };
     format!(
         "{} particles, {} {}, {way}; {:.2} s of processor time ({:.3} ms per particle), {:.0} bytes per particle\n",
-        s.particles,
-        s.iterations,
-        match (marched, s.iterations) {
+        s.convergence.particles,
+        s.convergence.iterations,
+        match (marched, s.convergence.iterations) {
             (true, 1) => "step",
             (true, _) => "steps",
             (false, 1) => "iteration",
             (false, _) => "iterations",
         },
-        s.cpu_seconds,
-        s.cpu_ms_per_particle,
-        s.bytes_per_particle,
+        s.cost.cpu_seconds,
+        s.cost.cpu_ms_per_particle,
+        s.cost.bytes_per_particle,
     )
 }
 
 /// How many steps missed their goal; nothing where all met it.
 fn missed(s: &Summary) -> String {
-    match s.unconverged_steps {
+    match s.convergence.unconverged_steps {
         0 => String::new(),
         n => format!(", inner iterations of {n} of them short of their goal"),
     }
@@ -350,48 +353,48 @@ fn row(name: &str, c: &Coefficients) -> String {
 
 /// Loads of a steady state, or at the end of a march without a period; nothing without bodies.
 fn loads(s: &Summary) -> String {
-    let (all, momentum) = (&s.loads, &s.loads_momentum_balance);
+    let (all, momentum) = (&s.loads.total, &s.loads.momentum_balance);
     if all.cl == 0.0 && all.cd == 0.0 {
         return String::new();
     }
-    let mut text = s.loads_at.map_or_else(String::new, |t| format!("at t = {t:.4}\n")) + LOADS;
-    text += &row("wall pressure", s.loads_pressure.as_ref().unwrap_or(all));
-    if let Some(friction) = &s.loads_friction {
+    let mut text = s.conditions.loads_at.map_or_else(String::new, |t| format!("at t = {t:.4}\n")) + LOADS;
+    text += &row("wall pressure", s.loads.pressure.as_ref().unwrap_or(all));
+    if let Some(friction) = &s.loads.friction {
         text += &(row("wall friction", friction) + &row("both", all));
     }
     text += &momentum.as_ref().map_or_else(String::new, |b| row("momentum", b));
-    text += &s.loads_error.as_ref().map_or_else(String::new, |bar| row("error bar ±", bar));
+    text += &s.grid.loads_error.as_ref().map_or_else(String::new, |bar| row("error bar ±", bar));
     text + &in_space(s)
 }
 
 /// Drag from the wake and of the load along the span, and what acts at the roots of wings and fins.
 fn in_space(s: &Summary) -> String {
     let mut text = String::new();
-    if let Some(w) = s.wake_planes.first() {
+    if let Some(w) = s.loads.wake_planes.first() {
         text += &format!(
             "{:<16}{:9.5}  {:9.5}  {:.2} chords behind: induced {:.5}, entropy {:.5}\n",
             "wake", w.cl, w.cd, w.distance, w.cd_induced, w.cd_entropy
         );
     }
-    if let Some(l) = &s.span_load {
+    if let Some(l) = &s.loads.span_load {
         text += &format!(
             "{:<16}{:9.5}  {:9.5}  induced drag of the load along the span, efficiency {:.3}\n",
             "span load", l.cl, l.cd_induced, l.efficiency
         );
         text += &l.left_out.iter().map(|told| format!("{:<16}{told}\n", "")).collect::<String>();
     }
-    if !s.root_loads.is_empty() {
+    if !s.loads.root_loads.is_empty() {
         text += "at the root          shear    bending    torsion  in the units of the case; over q S and q S c\n";
     }
-    for r in &s.root_loads {
+    for r in &s.loads.root_loads {
         let place = format!("{} {} {:.4}", r.body, if r.axis == Span::Lying { "y" } else { "z" }, r.root);
         text += &format!("{place:<16}{:10.4e} {:10.4e} {:10.4e}  ", r.shear, r.bending, r.torsion);
         text += &format!("{:9.5} {:9.5} {:9.5}\n", r.shear_coefficient, r.bending_coefficient, r.torsion_coefficient);
     }
-    if !s.hinge_moments.is_empty() {
+    if !s.loads.hinge_moments.is_empty() {
         text += "hinge moment       moment  coefficient     area      chord  in the units of the case; over q S c behind the hinge\n";
     }
-    for h in &s.hinge_moments {
+    for h in &s.loads.hinge_moments {
         text +=
             &format!("{:<16}{:10.4e}  {:9.5} {:10.4e} {:10.4e}\n", h.name, h.moment, h.coefficient, h.area, h.chord);
     }
@@ -408,7 +411,7 @@ fn periodic_loads(p: &PeriodicLoads) -> String {
         1 => "first harmonic".to_owned(),
         n => format!("harmonic {n}"),
     };
-    let per = match p.motion {
+    let per = match p.motion.as_str() {
         "angle" => "  per radian",
         "mode" => "  per unit of the mode",
         _ => "  per length of the motion",
@@ -422,7 +425,7 @@ fn change_of_period(s: &Summary) -> String {
     if !s.is_march() {
         return String::new();
     }
-    match &s.periodic_change {
+    match &s.periodic.periodic_change {
         Some(c) => format!(
             "from the period before it differs by {:.1e} (means) and {:.1e} (first harmonics) of the first harmonics\n",
             c.mean, c.first_harmonic
@@ -433,12 +436,12 @@ fn change_of_period(s: &Summary) -> String {
 
 /// Loads at the instant that fields and pictures are of.
 fn instant(s: &Summary) -> String {
-    s.loads_at.map_or_else(String::new, |t| row(&format!("at t = {t:.4}"), &s.loads))
+    s.conditions.loads_at.map_or_else(String::new, |t| row(&format!("at t = {t:.4}"), &s.loads.total))
 }
 
 /// Cycles that the lift of a march goes through of itself.
 fn cycles(s: &Summary) -> String {
-    let Some(c) = s.lift_cycles.as_ref().filter(|_| s.is_march()) else { return String::new() };
+    let Some(c) = s.periodic.lift_cycles.as_ref().filter(|_| s.is_march()) else { return String::new() };
     format!(
         "the last {} cycles of the lift, {:.5} in a unit of time (they differ by {:.1} %): CL {:.5} ± {:.5}, CD {:.5} ± {:.5}\n",
         c.cycles,

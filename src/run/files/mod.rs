@@ -21,12 +21,12 @@ use crate::observe::table::{Entry, write_csv, write_json};
 use crate::observe::vtk::{Column, Facets, read_collection, write_cells, write_collection, write_surface};
 use crate::problem::RunError;
 use crate::problem::files;
+use crate::record::summary::Summary;
 use crate::report;
 use crate::scheme::Work;
 use crate::study::found::Found;
 use crate::study::keeper::{FILM, FILM_FIELDS};
 use crate::study::look::{GasView, Held, Hull, Mesh, Rim, SHADE, Snapshot, WallSnapshot, field, planes};
-use crate::study::record::summary::Summary;
 use crate::study::record::trace::Trace;
 use crate::study::record::{Log, passed};
 
@@ -66,15 +66,15 @@ pub(crate) fn write_all<const D: usize>(
     if found.case.output.report {
         let to = Target { case: found.case, out };
         report::write_polar(out)?;
-        let vortex = summary.tip_vortex;
+        let vortex = summary.loads.tip_vortex;
         pictures::write(&Scene { to, view: found.view, surface: found.surface, chord: found.axes.chord, vortex })?;
         strips::write_chart(found, out)?;
         // the page tells the cost of all but itself
         let path = out.join("summary.json");
-        summary.spent(log.seconds());
+        summary.cost.spent(log.seconds(), summary.convergence.particles);
         write_json(&path, summary)?;
         report::write_report(out)?;
-        summary.spent(log.seconds());
+        summary.cost.spent(log.seconds(), summary.convergence.particles);
         write_json(&path, summary)?;
     }
     Ok(())
@@ -98,7 +98,7 @@ struct Files<'a, const D: usize> {
 impl<const D: usize> Files<'_, D> {
     fn write_tables(&self, cycles: &[[f64; 5]], summary: &Summary) -> Result<(), RunError> {
         write_json(&self.out.join("summary.json"), summary)?;
-        if let Some(ledger) = &summary.ledger {
+        if let Some(ledger) = &summary.convergence.ledger {
             write_json(&self.out.join("ledger.json"), ledger)?;
         }
         write_json(

@@ -3,8 +3,8 @@ use std::path::Path;
 
 use crate::case::Case;
 use crate::geometry::Surface;
+use crate::record::summary::TipVortex;
 use crate::scheme::View;
-use crate::study::look::TipVortex;
 
 /// Where files of a case go.
 #[derive(Clone, Copy)]

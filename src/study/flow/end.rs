@@ -5,8 +5,8 @@ use super::super::doubts;
 use super::super::found::{Found, Names, Spent};
 use super::super::keeper::{Camera, End};
 use super::super::look::{GasView, LoadFrame, field, momentum, span_load, span_loads, wake_planes};
-use super::super::record::summary::Clock;
-use super::super::record::{Log, SolidEnd};
+use super::super::record::work::Clock;
+use super::super::record::{Log, solid_end};
 use super::super::solids::snapshot;
 use super::super::solution::Solution;
 use super::super::studies::{ForceSource, SmallMotion};
@@ -67,14 +67,14 @@ impl<'a, S: Marches<D> + 'a, const D: usize> Flow<'a> for GasFlow<'a, S, D> {
             return Ok(Err(log.record.iteration));
         }
         let solid = end.solver.system.solid_snapshot(frame, state);
-        summary.solid = solid.as_ref().map(|at| SolidEnd::of(at, log));
-        summary.cloud = spacing::scaled(case, end.stage.factor).cloud;
+        summary.structures.solid = solid.as_ref().map(|at| solid_end(at, log));
+        summary.conditions.cloud = spacing::scaled(case, end.stage.factor).cloud;
         let doubts = doubts::told(case, (&summary, surface), log.record.trace.largest(), solid.as_ref());
         doubts.iter().for_each(|d| log.warn(d));
-        summary.warnings.clone_from(&log.record.warnings);
+        summary.convergence.warnings.clone_from(&log.record.warnings);
         let (field, walls) = (field(case, &view), found.walls());
         if let Some(camera) = camera {
-            let (chosen, refined) = (summary.cloud != root.given().cloud, end.stage.cycle > 0);
+            let (chosen, refined) = (summary.conditions.cloud != root.given().cloud, end.stage.cycle > 0);
             let solid = solid.as_ref();
             let end = End { found: &found, field: &field, walls: &walls, solid, chosen, refined };
             camera.end(end, &mut summary, log)?;

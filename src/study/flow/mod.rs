@@ -14,11 +14,11 @@ use super::keeper::{Camera, Keeper};
 use super::monitor::Monitor;
 use super::record::Log;
 use super::record::saved::Saved;
-use super::record::summary::Summary;
 use super::solution::Solution;
 use super::studies::ForceSource;
 use crate::case::Case;
 use crate::problem::{Problem, ProblemIn, Remark, RunError, coupled};
+use crate::record::summary::Summary;
 use stages::Stages;
 
 /// State that a run begins with.

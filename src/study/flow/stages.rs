@@ -9,7 +9,7 @@ use super::super::look::load_axes;
 use super::super::monitor::Monitor;
 use super::super::recipe;
 use super::super::record::saved::{Position, flatten};
-use super::super::record::summary::Clock;
+use super::super::record::work::Clock;
 use super::super::record::{Log, Scales};
 use super::super::setup::{self, Solver};
 use super::super::stage::{Stage, Task, describe};

@@ -47,13 +47,13 @@ pub(super) fn march(problem: &Problem, at: &mut FlutterAt, monitor: &mut dyn Mon
             return Ok(true);
         }
     };
-    let place = summary.structure.iter().flat_map(|s| &s.coordinates).position(|c| c.name == *name);
-    let Some(swing) = place.and_then(|k| summary.swings.get(k).copied().flatten()) else {
+    let place = summary.structures.structure.iter().flat_map(|s| &s.coordinates).position(|c| c.name == *name);
+    let Some(swing) = place.and_then(|k| summary.structures.swings.get(k).copied().flatten()) else {
         let what = format!("{name} does not swing at the end of the march from its limit cycle");
         at.warn((what, remedy::CYCLES));
         return Ok(true);
     };
-    let found = told(cycle, &swing, summary.time / period, summary.cpu_seconds);
+    let found = told(cycle, &swing, summary.convergence.time / period, summary.cost.cpu_seconds);
     doubts(&found, cycle.amplitude).into_iter().for_each(|what| at.warn((what, remedy::MARCH)));
     at.cycles[largest].march = Some(found);
     Ok(true)

@@ -4,13 +4,13 @@ use num_complex::Complex64;
 
 use super::super::flow;
 use super::super::monitor::{Monitor, Quiet};
-use super::super::record::summary::Summary;
 use super::super::solution::Solution;
 use super::cloud_error;
 use super::record::{Column, Matrices};
 use crate::case::{AnyMode, Cloud, Gaf, Mode};
 use crate::problem::coarser::COARSER;
 use crate::problem::{Problem, RunError};
+use crate::record::summary::Summary;
 
 /// Part of the amplitude of `[gaf]` that a column is computed with once more.
 const HALF: f64 = 0.5;
@@ -91,9 +91,9 @@ impl Swing<'_> {
     /// Loads with `factor` times the amplitude of `[gaf]` and the cloud that they were found on; `None` when the monitor says stop.
     fn solved(&self, own: Problem, factor: f64, monitor: &mut dyn Monitor) -> Result<Option<(Swung, Cloud)>, RunError> {
         let Some(Solution { summary, .. }) = flow::in_memory(&own, monitor)? else { return Ok(None) };
-        let (cpu_seconds, converged) = (summary.cpu_seconds, summary.succeeded());
+        let (cpu_seconds, converged) = (summary.cost.cpu_seconds, summary.succeeded());
         let swung = Swung { loads: self.loads(&summary, factor)?, cpu_seconds, converged };
-        Ok(Some((swung, summary.cloud)))
+        Ok(Some((swung, summary.conditions.cloud)))
     }
 
     /// A column of the matrix, with what it changes by when the amplitude is halved.
@@ -139,17 +139,17 @@ impl Swing<'_> {
     /// Lift, moment and generalised forces over the motion, which has `factor` times the amplitude of `[gaf]`.
     fn loads(&self, summary: &Summary, factor: f64) -> Result<Vec<Complex64>, RunError> {
         let Self { plan, mode, .. } = *self;
-        let length = plan.reduced_length.map_or(0.5 * summary.chord, |l| l.0);
+        let length = plan.reduced_length.map_or(0.5 * summary.conditions.chord, |l| l.0);
         // the part of the motion, the coordinate per unit of it, the amplitude of the coordinate
         let (part, scale, amplitude) = match mode {
             AnyMode::Rigid(Mode::Pitch) => ("angle", 1.0, plan.pitch.unwrap_or(Gaf::PITCH).0),
             AnyMode::Rigid(Mode::Plunge) => ("shift", length, plan.plunge.unwrap_or(Gaf::PLUNGE).0 / length),
             AnyMode::Flexible(mode) => ("mode", 1.0, mode.amplitude.unwrap_or_default()),
         };
-        let found = summary.first_harmonics.iter().find(|h| h.motion.starts_with(part));
+        let found = summary.periodic.first_harmonics.iter().find(|h| h.motion.starts_with(part));
         let found = found.ok_or_else(|| RunError::NothingMoved { mode: mode.name().to_owned() })?;
         let loads = [found.cl, found.cm].map(|[re, im]| Complex64::new(re, im) * scale);
-        let forces = summary.generalised_forces.iter().map(|f| f.per(factor * amplitude));
+        let forces = summary.periodic.generalised_forces.iter().map(|f| f.per(factor * amplitude));
         Ok(loads.into_iter().chain(forces).collect())
     }
 }

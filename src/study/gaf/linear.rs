@@ -9,7 +9,7 @@ use num_complex::Complex64;
 use super::super::cost;
 use super::super::flow::{self, Flow};
 use super::super::monitor::{Monitor, Quiet, Within};
-use super::super::record::summary::Clock;
+use super::super::record::work::Clock;
 use super::super::solution::Solution;
 use super::super::studies::{ForceSource, SOLVED, in_order};
 use super::super::time_left::Portion;
@@ -129,7 +129,7 @@ impl Asked<'_> {
         let Some(shocks) = self.columns(&mut *flow, add)? else { return Ok(None) };
         let Ok(Solution { summary, .. }) = flow.conclude(None)? else { return Ok(None) };
         let solved = summary.succeeded();
-        Ok(Some(SteadyFlow { cloud: summary.cloud, solved, shocks }))
+        Ok(Some(SteadyFlow { cloud: summary.conditions.cloud, solved, shocks }))
     }
 
     /// Hands the columns about a flow that is known to `add`, frequency by frequency; true where that flow is faster than sound somewhere,

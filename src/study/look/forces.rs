@@ -7,9 +7,6 @@
 //! The coordinate of plunge is the displacement upwards over L, the length of the reduced frequency: ∂x/∂q = L e. That of pitch
 //! is the angle about the pivot, so that Q is the moment coefficient. That of a flexible mode is its own: ∂x/∂q = R φ(X). Bodies
 //! with a motion of their own do not take part.
-use num_complex::Complex64;
-use serde::{Deserialize, Serialize};
-
 use super::axes::{GasView, LoadFrame, load_axes};
 use crate::case::{AnyMode, Case, Mode};
 use crate::geometry::Surface;
@@ -18,18 +15,8 @@ use crate::math::fourier::Series;
 use crate::math::reduce::sum;
 use crate::motion::Motions;
 use crate::observe::loads::{Load, LoadAxes};
+use crate::record::summary::GeneralisedForce;
 use crate::scheme::{Fluid, View, Work};
-
-/// Generalised force on one mode over a period.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct GeneralisedForce {
-    /// Name of the mode.
-    pub mode: String,
-    /// Mean.
-    pub mean: f64,
-    /// First harmonic, f(t) = Re f exp(iωt): real and imaginary part.
-    pub first: [f64; 2],
-}
 
 /// What a mode does to the walls.
 enum Form<const D: usize> {
@@ -124,13 +111,6 @@ impl<const D: usize> ForceModes<D> {
             Some(GeneralisedForce { mode: name.clone(), mean: c[0], first: [c[1], -c[n + 1]] })
         };
         self.all.iter().enumerate().filter_map(force).collect()
-    }
-}
-
-impl GeneralisedForce {
-    /// First harmonic over that of a coordinate that goes as amplitude · sin ωt.
-    pub(crate) fn per(&self, amplitude: f64) -> Complex64 {
-        Complex64::new(self.first[0], self.first[1]) / Complex64::new(0.0, -amplitude)
     }
 }
 

@@ -1,23 +1,11 @@
 //! What the gas does to the walls it sticks to: friction, heat, separation.
-use serde::Serialize;
-
 use super::axes::load_on_walls;
 use crate::case::Case;
 use crate::math::Vector;
 use crate::observe::loads::{Load, LoadAxes};
+use crate::record::summary::Separation;
 use crate::scheme::View;
 use crate::scheme::start::{free_stream, stream_axes};
-
-/// A place where friction on a wall turns against the stream.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Separation {
-    /// Number of the body, from 0.
-    pub body: u16,
-    /// True on the side whose normal has a part along the lift.
-    pub upper: bool,
-    /// Distance from the nose over the extent of the bodies.
-    pub x_c: f64,
-}
 
 /// Friction on one interface particle.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]

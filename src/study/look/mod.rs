@@ -17,8 +17,6 @@ mod wall_weights;
 mod walls;
 
 pub use field::Snapshot;
-pub use tip_vortex::TipVortex;
-pub use wake::WakePlane;
 pub use walls::WallSnapshot;
 
 pub(crate) use axes::{GasView, LoadFrame, load_axes, motion, pressure_load, totals};

@@ -4,13 +4,12 @@
 //! side of the middle: all vorticity that this half of the wings leaves behind, which is the circulation of the bound vortex at
 //! the root, Γ = ∬ ω_x dy dz (Anderson, *Fundamentals of Aerodynamics*, section 5.3), positive where the lift is. The core is the
 //! centre of axial vorticity around its greatest value in the outer part.
-use serde::Serialize;
-
 use super::symmetry::side_of_symmetry;
 use crate::case::Case;
 use crate::geometry::Surface;
 use crate::math::parallel::sweep_each;
 use crate::math::{Bounds, Vector};
+use crate::record::summary::TipVortex;
 use crate::scheme::View;
 use crate::scheme::probe::{Near, Probe};
 
@@ -26,19 +25,6 @@ const INNER: f64 = 0.3;
 const POINTS: usize = 120;
 /// Radius in which the centre of the core is taken, in spacings of the particles.
 const CORE: f64 = 2.0;
-
-/// The vortex that leaves a tip, in the units of the case.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-pub struct TipVortex {
-    /// Place of the plane.
-    pub x: f64,
-    /// Place of the core along the span.
-    pub y: f64,
-    /// Height of the core.
-    pub z: f64,
-    /// Circulation of the half plane; positive for lift.
-    pub circulation: f64,
-}
 
 /// The half of a plane across the stream behind the bodies.
 #[derive(Clone, Copy, Debug)]

@@ -14,8 +14,6 @@
 //! circulation around tiles of the plane. The wake is looked for near the bodies alone: far away particles are wide apart, and what
 //! rounding leaves there adds up over large areas. A captured wake decays: its crossflow becomes entropy, so that the sum of both
 //! drags stays.
-use serde::Serialize;
-
 use super::momentum::tile;
 use super::symmetry::side_of_symmetry;
 use crate::case::Case;
@@ -24,6 +22,7 @@ use crate::math::reduce::sums;
 use crate::math::{Bounds, Vector};
 use crate::observe::loads::LoadAxes;
 use crate::physics::Primitive;
+use crate::record::summary::WakePlane;
 use crate::scheme::View;
 use crate::scheme::probe::{Near, Probe};
 use crate::scheme::start::free_stream;
@@ -33,23 +32,6 @@ const DISTANCES: [f64; 3] = [0.5, 0.75, 1.0];
 
 /// How far beyond the bodies across the stream the wake is looked for, in reference chords.
 const MARGIN: f64 = 1.2;
-
-/// Lift and drag from one plane behind the bodies.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
-pub struct WakePlane {
-    /// Distance behind the bodies in reference chords.
-    pub distance: f64,
-    /// Place along x.
-    pub x: f64,
-    /// Lift coefficient of the vorticity of the wake.
-    pub cl: f64,
-    /// Induced drag coefficient.
-    pub cd_induced: f64,
-    /// Drag coefficient of entropy: shocks, and what the scheme loses.
-    pub cd_entropy: f64,
-    /// Sum of both.
-    pub cd: f64,
-}
 
 /// Lift and drag from planes behind the bodies, the nearest first; none without bodies or a subsonic stream, or in the plane.
 pub(crate) fn wake_planes<const D: usize>(

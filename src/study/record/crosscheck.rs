@@ -1,7 +1,6 @@
 //! Loads of a period, evaluated twice: on the walls, and from the momentum of the gas around the bodies.
-use serde::Serialize;
-
 use crate::observe::loads::Coefficients;
+use crate::record::summary::{LoadCrosscheck, LoadsApart};
 
 /// Name of the table in the run folder.
 pub(crate) const FILE: &str = "momentum.csv";
@@ -10,30 +9,6 @@ pub(crate) const COLUMNS: [&str; 8] =
     ["iteration", "time", "cl", "cd", "cm", "cl_momentum", "cd_momentum", "cm_momentum"];
 /// Moments of a period of a march at which both are evaluated.
 pub(crate) const MOMENTS: u32 = 12;
-
-/// How far two evaluations of a load lie apart over a period.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-pub struct Apart {
-    /// Mean difference, momentum balance less walls.
-    pub mean: f64,
-    /// Root mean square of the difference.
-    pub rms: f64,
-    /// Greatest less smallest load on the walls at these moments.
-    pub range: f64,
-}
-
-/// Loads of the last period by momentum balance, against those on the walls.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-pub struct LoadCrosscheck {
-    /// Moments at which both were evaluated: of a march, or the instances of a harmonic balance.
-    pub moments: usize,
-    /// Lift.
-    pub cl: Apart,
-    /// Drag.
-    pub cd: Apart,
-    /// Moment.
-    pub cm: Apart,
-}
 
 /// Both evaluations at every moment of a run so far.
 #[derive(Clone, Debug, Default)]
@@ -82,7 +57,7 @@ impl Twofold {
             let difference = |r: &&[f64; 8]| r[c + 3] - r[c];
             let [low, high] =
                 rows.iter().fold([f64::INFINITY, f64::NEG_INFINITY], |[l, h], r| [l.min(r[c]), h.max(r[c])]);
-            Apart {
+            LoadsApart {
                 mean: rows.iter().map(difference).sum::<f64>() / n,
                 rms: (rows.iter().map(|r| difference(r).powi(2)).sum::<f64>() / n).sqrt(),
                 range: high - low,

@@ -3,16 +3,15 @@ use std::sync::Arc;
 
 use super::super::keeper::{Earlier, Keeper, Tables};
 use super::super::look::LoadFrame;
-use super::super::look::forces::GeneralisedForce;
 use super::super::monitor::{Monitor, Tick};
 use super::super::time_left::Portion;
 use super::crosscheck::{Moment, Twofold};
 use super::history::IterationHistory;
 use super::interval::passed;
-use super::polar::{PolarPoint, PolarRecord};
+use super::polar::PolarRecord;
 use super::saved::{Saved, Settling};
-use super::summary::{BalanceReport, Clock, Work};
 use super::trace::Trace;
+use super::work::{Clock, Work};
 use crate::case::{Case, Units};
 use crate::observe::convergence::CloudLoads;
 use crate::observe::error_bars::{Measure, Measured, Quantity, Window};
@@ -20,6 +19,7 @@ use crate::observe::structure::{CoordinateHistory, StructureNames, StructureSamp
 use crate::observe::swing::Swing;
 use crate::problem::Described;
 use crate::problem::RunError;
+use crate::record::summary::{BalanceReport, GeneralisedForce, PolarPoint};
 use crate::scheme::RemapLedger;
 use crate::time::TimeError;
 

@@ -5,14 +5,13 @@ mod history;
 mod interval;
 mod log;
 pub(crate) mod polar;
-pub(crate) mod reference;
 pub(crate) mod saved;
 pub(crate) mod solid_end;
-pub(crate) mod summary;
 pub(crate) mod trace;
 mod trust;
+pub(crate) mod work;
 
 pub use history::IterationHistory;
 pub(crate) use interval::{NEARLY, passed};
 pub(crate) use log::{Log, Record, Scales};
-pub(crate) use solid_end::SolidEnd;
+pub(crate) use solid_end::solid_end;

@@ -1,42 +1,17 @@
 //! How bodies made of particles in a gas ended: what their probes did, and the greatest stress.
-use serde::Serialize;
-
 use super::super::solids::von_mises;
 use super::log::Log;
 use crate::coupling::SolidSnapshot;
+use crate::record::summary::{ProbeEnd, SolidEnd};
 
-/// Motion and stress of the bodies made of particles in a gas, in the units of the case.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct SolidEnd {
-    /// Displacements of the probes; without any the mean ones of the bodies.
-    pub probes: Vec<ProbeEnd>,
-    /// Greatest von Mises stress at the end.
-    pub stress: f64,
-    /// Place of the particle that has it, before it was moved.
-    pub stress_at: Vec<f64>,
-}
-
-/// Displacement of a probe.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct ProbeEnd {
-    /// Name of the probe, or of the body whose mean displacement it is.
-    pub name: String,
-    /// Displacement at the end.
-    pub displacement: Vec<f64>,
-    /// Greatest distance from where it was at rest in all of the run.
-    pub farthest: f64,
-}
-
-impl SolidEnd {
-    /// What the table of a run and its last state tell.
-    pub(crate) fn of<const D: usize>(at: &SolidSnapshot<'_, D>, log: &Log<'_>) -> Self {
-        let stresses = von_mises(at.solid, &at.state());
-        let worst = (0..stresses.len()).max_by(|a, b| stresses[*a].total_cmp(&stresses[*b]));
-        Self {
-            probes: probes::<D>(log),
-            stress: worst.map_or(0.0, |i| stresses[i]),
-            stress_at: worst.map_or_else(Vec::new, |i| at.solid.particles.x[i].0.to_vec()),
-        }
+/// What the table of a run and its last state tell.
+pub(crate) fn solid_end<const D: usize>(at: &SolidSnapshot<'_, D>, log: &Log<'_>) -> SolidEnd {
+    let stresses = von_mises(at.solid, &at.state());
+    let worst = (0..stresses.len()).max_by(|a, b| stresses[*a].total_cmp(&stresses[*b]));
+    SolidEnd {
+        probes: probes::<D>(log),
+        stress: worst.map_or(0.0, |i| stresses[i]),
+        stress_at: worst.map_or_else(Vec::new, |i| at.solid.particles.x[i].0.to_vec()),
     }
 }
 

@@ -1,12 +1,12 @@
 //! What a motion that repeats says about its loads: harmonics, loops, work of a cycle.
 mod measured;
 
-use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
 
 use crate::observe::cycles::Cycles;
 use crate::observe::harmonics::{Harmonics, Periodicity, Window};
 use crate::observe::loads::Coefficients;
+use crate::record::summary::{Change, FirstHarmonics, LastPeriod, PeriodicLoads};
 use crate::verify::Loops;
 
 /// Harmonics that are reported: more where those do not hold the motion, as of several frequencies on their common one.
@@ -43,65 +43,6 @@ pub(crate) struct Trace {
     samples: Vec<Sample>,
     /// Periods at the end that loops and harmonics are the mean of, at least one.
     periods: u32,
-}
-
-/// How the loads differ from those one period before.
-#[derive(Clone, Copy, Debug, Default, Serialize)]
-pub struct Change {
-    /// Periods marched.
-    pub periods: f64,
-    /// Greatest change of a mean over the first harmonic.
-    pub mean: f64,
-    /// Greatest change of a first harmonic over itself.
-    pub first_harmonic: f64,
-}
-
-/// Loads over the last period of the motion.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct LastPeriod {
-    /// Mean of the lift.
-    pub mean_cl: f64,
-    /// Greatest lift.
-    pub peak_cl: f64,
-    /// Mean of the drag.
-    pub mean_cd: f64,
-    /// Greatest drag.
-    pub peak_cd: f64,
-}
-
-/// First harmonics of the loads over that of one part of the motion: real and imaginary parts. Where a part has other harmonics, as
-/// with several frequencies on their common one, so do these.
-#[derive(Clone, Debug, Serialize)]
-pub struct FirstHarmonics {
-    /// `angle` (loads per radian), `shift_x`, `shift_y`, `shift_z` (per length) or `mode` (per unit of its coordinate).
-    pub motion: &'static str,
-    /// Number of the harmonic.
-    pub harmonic: usize,
-    /// Lift.
-    pub cl: [f64; 2],
-    /// Drag.
-    pub cd: [f64; 2],
-    /// Sample.
-    pub cm: [f64; 2],
-}
-
-/// Loads of the last period: f(t) = mean + amplitude cos(ωt + phase) and higher harmonics.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-pub struct PeriodicLoads {
-    /// Means.
-    pub mean: Coefficients,
-    /// Amplitudes of the harmonic that the motion has most of: the first, but for motions of several frequencies.
-    pub amplitude: Coefficients,
-    /// What that harmonic leads the motion by, degrees from -180 to 180.
-    pub phase_deg: Coefficients,
-    /// Amplitudes over that of the motion: per radian, per length or per unit of the coordinate of a mode.
-    pub per_motion: Coefficients,
-    /// Amplitude of the motion in that harmonic, in radians, lengths or units of its coordinate.
-    pub motion_amplitude: f64,
-    /// Number of the harmonic.
-    pub harmonic: usize,
-    /// Part of the motion that phases are measured against.
-    pub motion: &'static str,
 }
 
 /// Parts of the motion that are there, by name.
@@ -147,7 +88,7 @@ impl Trace {
             let of = |harmonic: usize| {
                 let over = |load: &Harmonics| [load.per(motion, harmonic).re, load.per(motion, harmonic).im];
                 let [cl, cd, cm] = loads.each_ref().map(over);
-                FirstHarmonics { motion: name, harmonic, cl, cd, cm }
+                FirstHarmonics { motion: (*name).to_owned(), harmonic, cl, cd, cm }
             };
             motion.present(PRESENT).into_iter().map(of)
         });
@@ -170,7 +111,7 @@ impl Trace {
             per_motion: of(&|h| h.per(moved, harmonic).norm()),
             motion_amplitude: moved.term(harmonic).norm(),
             harmonic,
-            motion,
+            motion: (*motion).to_owned(),
         })
     }
 

@@ -1,6 +1,5 @@
 //! Whether the numbers of a checkpoint are those of a run: checksums tell damage of the file, not what was written into it.
 use super::history::IterationHistory;
-use super::polar::PolarPoint;
 use super::saved::{LagrangianCheckpoint, Saved, require};
 use crate::case::Case;
 use crate::observe::convergence::CloudLoads;
@@ -8,6 +7,7 @@ use crate::observe::loads::Coefficients;
 use crate::problem::RunError;
 use crate::problem::numerics;
 use crate::problem::spacing;
+use crate::record::summary::PolarPoint;
 use crate::study::stage::{Stage, Task};
 use crate::system::{Field, unknowns};
 use crate::time::Memory;

@@ -10,7 +10,7 @@ mod summary;
 use std::path::Path;
 
 use super::monitor::Monitor;
-use super::record::summary::Clock;
+use super::record::work::Clock;
 use crate::case::{Case, Temporal};
 use crate::geometry::dimension;
 use crate::problem::RunError;

@@ -1,5 +1,5 @@
 //! When structures alone write checkpoints: after so many steps, or so much wall-clock time.
-use super::super::record::summary::Clock;
+use super::super::record::work::Clock;
 use crate::case::Output;
 
 /// Times as long as a checkpoint took to write that must pass before the next one is due for the number of steps: explicit steps of

@@ -1,5 +1,5 @@
 //! What a structure alone tells at its end.
-use super::super::record::summary::Clock;
+use super::super::record::work::Clock;
 use super::fields::{history, snapshot};
 use super::march::{Marched, Study};
 use super::record::{ModeRow, ProbeRow, SolidSolution, SolidSummary, ledger};

@@ -2,7 +2,6 @@
 use super::super::keeper::Camera;
 use super::super::record::Log;
 use super::super::record::saved::Settling;
-use super::super::record::summary::BalanceReport;
 use super::super::setup::Solver;
 use super::super::stage::Task;
 use super::super::watch::{Aim, Checkpoint, Ending, Observer, Progress, Told, drive};
@@ -16,6 +15,7 @@ use crate::math::reduce::sum;
 use crate::physics::n_variables;
 use crate::problem::RunError;
 use crate::problem::numerics::{harmonic_control, is_automatic};
+use crate::record::summary::BalanceReport;
 use crate::scheme::{Fluid, Frame, HasGas};
 use crate::system::System;
 use crate::time::control::Method;

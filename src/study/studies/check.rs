@@ -5,7 +5,6 @@
 //! and leaves the balance where the flow has a rhythm of its own or waves that the harmonics cannot hold.
 use super::super::look::GasView;
 use super::super::record::Log;
-use super::super::record::summary::{Apart, MarchingCheck};
 use super::super::watch::{Effort, Ending, Now, Observer, Told, drive};
 use super::lead::even_steps;
 use super::periodic::{PeriodicState, terms};
@@ -15,6 +14,7 @@ use crate::observe::harmonics::{Harmonics, Window};
 use crate::observe::loads::Coefficients;
 use crate::problem::RunError;
 use crate::problem::numerics::harmonic_control;
+use crate::record::summary::{Apart, MarchingCheck};
 use crate::scheme::HasGas;
 use crate::time::dual::Dual;
 use crate::time::{Integrator, Past, Standing, Step};

@@ -5,7 +5,7 @@
 //! trailing edge down. A piece of wall across the line counts with its part behind it. Coefficients are of the control surface itself, C_h =
 //! H/(q S_f c_f), with its area S_f as seen across line and stream and its mean chord c_f = S_f over the length of the line (Abbott and von
 //! Doenhoff, *Theory of Wing Sections*, 1959, §8.1); in the plane H/(q c_f²).
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 /// A hinge line.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -28,7 +28,7 @@ pub struct Patch {
 }
 
 /// The moment about a hinge.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct HingeMoment {
     /// Name of the hinge.
     pub name: String,

@@ -9,7 +9,7 @@
 //!
 //! shear V = Σ F·up, bending M = Σ (s_k − s) F·up − (x_k − x)·up F·span, positive where tips are bent up, and torsion
 //! T = Σ (x_k − x)·up F_x − (x_k − x)_x F·up about the quarter chord, nose up positive.
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use super::loads::{Coefficients, Load, LoadAxes};
 
@@ -45,7 +45,7 @@ pub struct Wrench {
 }
 
 /// Which way a span runs.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Span {
     /// Along y: wings and all that lies; up is z.
     #[serde(rename = "y")]
@@ -100,7 +100,7 @@ pub struct Strips {
 }
 
 /// What acts at the root of one side of a wing or a fin.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct RootLoads {
     /// Name of the body.
     pub body: String,

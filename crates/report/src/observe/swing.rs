@@ -2,7 +2,7 @@
 //!
 //! The phase φ of the first harmonic of two successive periods T tells the frequency, ω = 2π/T + (φ − φ')/T, with which both are looked at
 //! once more.
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use super::damping::Tail;
 use super::harmonics::{Harmonics, Window};
@@ -13,7 +13,7 @@ const HARMONICS: usize = 5;
 const LOOKS: usize = 3;
 
 /// The last period of an oscillation.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Swing {
     /// Mean.
     pub mean: f64,

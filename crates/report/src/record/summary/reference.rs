@@ -1,12 +1,12 @@
 //! Reference values of loads.
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use crate::case::Case;
 use crate::math::digits::short;
 use crate::observe::loads::LoadAxes;
 
 /// What loads are divided by.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ReferenceValues {
     /// Chord.
     pub chord: f64,
@@ -20,7 +20,7 @@ pub struct ReferenceValues {
 
 impl ReferenceValues {
     /// Those of loads in these axes.
-    pub(crate) fn of<const D: usize>(case: &Case, axes: &LoadAxes) -> Self {
+    pub fn of<const D: usize>(case: &Case, axes: &LoadAxes) -> Self {
         // the scale of forces in the units of the solver, whose speed of the stream is the Mach number
         let area = (D == 3).then(|| axes.force_scale / (0.5 * case.flow.reference().mach.powi(2)));
         let body = case.reference.body.clone();
@@ -36,6 +36,6 @@ impl ReferenceValues {
 }
 
 /// Numbers in brackets.
-pub(crate) fn list(numbers: &[f64]) -> String {
+pub fn list(numbers: &[f64]) -> String {
     format!("({})", numbers.iter().map(|x| short(*x)).collect::<Vec<_>>().join(", "))
 }
