@@ -56,8 +56,7 @@ pub(crate) fn write_all<const D: usize>(
     files.write_fields(all, log.record.time)?;
     write_state_script(out)?;
     if let Some(solid) = solid {
-        let time = found.case.flow.units().case_time(found.view.time());
-        let about = about::solid(found.case, Some(time));
+        let about = about::solid(found.case, Some(log.record.time));
         write_solid((out, "solid"), &about, solid)?;
         if found.case.output.report {
             draw_solid((out, &about), solid)?;
