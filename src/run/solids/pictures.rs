@@ -24,8 +24,9 @@ pub(super) struct Shown {
     pub(super) values: Vec<f64>,
 }
 
-/// A quantity with the unit of an array of fields.
+/// A quantity with the unit of an array of fields, where the case has units.
 pub(super) fn with_unit(quantity: &str, array: &str, scale: Option<Scale>) -> String {
+    let scale = scale.filter(|scale| scale.dimensional);
     let unit = scale.and_then(|scale| unit_of_array(array, scale)).filter(|unit| *unit != "1");
     unit.map_or_else(|| quantity.to_owned(), |unit| format!("{quantity}, {unit}"))
 }
