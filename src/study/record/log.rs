@@ -364,8 +364,8 @@ impl<'a> Log<'a> {
             }
         };
         let all: Vec<String> = table.coordinates.iter().zip(angles).map(told).collect();
-        let shown = |keeper: &Box<dyn Keeper>| format!("; `alula report {}` shows how it came there", keeper.name());
-        let report = self.keeper.as_ref().map_or_else(String::new, shown);
+        let shown = |keeper: &dyn Keeper| format!("; `alula report {}` shows how it came there", keeper.name());
+        let report = self.keeper.as_deref().map_or_else(String::new, shown);
         format!("\nat t = {time:.5} the structure had {}{report}", all.join(", "))
     }
 
