@@ -362,11 +362,9 @@ mod tests {
             through(cloud(2.0, 0.27300), 0.2741),
             through(cloud(1.0, 0.27301), 0.27312),
         ];
-        assert!(
-            Convergence::of(&clouds, 0.01).unwrap().cl.half_width < 3e-4,
-            "an eighth or sixteenth of the change before the last"
-        );
-        assert_eq!(Convergence::of(&clouds, 0.01).unwrap().cl.momentum, 0.0);
+        let found = Convergence::of(&clouds, 0.01).unwrap().cl;
+        // an eighth of the change before the last
+        assert!(found.momentum == 0.0 && found.half_width < 4e-4, "{found:?}");
     }
 
     #[test]
