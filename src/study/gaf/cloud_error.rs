@@ -30,7 +30,7 @@ pub(super) fn tell(columns: &mut [Column], others: &[(f64, Vec<Column>)]) {
     let usual: Vec<f64> = (0..rows)
         .map(|row| {
             let parts = changes.iter().zip(columns.iter());
-            median(parts.filter_map(|(change, c)| Some(change.as_ref()?[row] / size(c))).collect())
+            median(parts.filter_map(|(change, c)| Some(change.as_ref()?[row] / size(c).max(f64::MIN_POSITIVE))).collect())
         })
         .collect();
     for (column, change) in columns.iter_mut().zip(&changes) {
@@ -62,7 +62,7 @@ fn change(fine: &Column, coarse: &Column) -> Vec<f64> {
 
 /// Root of the sum of squares of all entries of a column.
 fn size(column: &Column) -> f64 {
-    entries(column).map(|f| f.norm_sqr()).sum::<f64>().sqrt().max(f64::MIN_POSITIVE)
+    entries(column).map(|f| f.norm_sqr()).sum::<f64>().sqrt()
 }
 
 /// Middle one of some numbers, of two the mean; zero of none.

@@ -4,7 +4,7 @@
 //! observed order is p = log₂(d₁/d₂) (Richardson 1911), the limit f + d₂/(2^p − 1), and the error bar 5/4 of the way to it
 //! (Roache 1994, grid convergence index). In space clouds are coarse beside noses and edges, the spacings of a family lie nearer to one another
 //! (h, 4/3 h, 2 h, 8/3 h), and an order that three of them show is often an accident: there errors are taken to fall with the spacing alone, so that half a spacing
-//! leaves as much as it has changed, |f(h) − f(2h)|; the last change, and half of what the coarsest of four clouds tells, are its floor. Between the orders 1 and 2 first-order errors (at shocks and corners) and second-order ones are
+//! leaves as much as it has changed, |f(h) − f(2h)|, of wall pressure or of momentum, whichever is more; the last change, and half of what the coarsest of four clouds tells, are its floor. Between the orders 1 and 2 first-order errors (at shocks and corners) and second-order ones are
 //! both there: the limit is that of f + a h + b h² through the three loads, which lies farther away. Where the gas is faster than sound
 //! shocks are captured, and no order but 1 is trusted. Loads that swing, hardly
 //! change, or change faster than the scheme can make them have no order to speak of: their bar is the honest spread, after Eça and
@@ -168,7 +168,7 @@ impl Convergence {
         let of = |load: fn(&CloudLoads) -> f64, part: fn(&Coefficients) -> f64, theory: f64| {
             let found = match four {
                 None => estimate([load(a), load(b), load(c)], c.supersonic),
-                Some(four) => first_order(&four.map(|cloud| [cloud.factor, load(&cloud)])),
+                Some(four) => first_order(four, load, part),
             };
             let far_field = FAR * load(c).abs() / c.reach.powi(2);
             let through = |cloud: &CloudLoads| cloud.momentum.as_ref().map(part);
@@ -236,13 +236,20 @@ fn to_come(before: Option<f64>, [b, c]: [f64; 2], shocks: bool) -> f64 {
     if order >= 1.0 { last / (order.min(SCHEME_ORDER[usize::from(shocks)]).exp2() - 1.0) } else { last }
 }
 
-/// The estimate from four loads with their spacings, coarse to fine, whose errors are taken to fall with the spacing: of the part of the
-/// spacing alone.
-fn first_order(clouds: &[[f64; 2]; IN_SPACE]) -> LoadEstimate {
-    let [coarsest, coarser, before, [h, last]] = *clouds;
-    let way = |[spacing, load]: [f64; 2]| (last - load).abs() / (spacing / h - 1.0);
-    let change = (last - before[1]).abs();
-    let spacing = (SAFETY * way(coarser)).max(change).max(FROM_COARSEST * way(coarsest));
+/// The estimate from four clouds, coarse to fine, whose errors are taken to fall with the spacing: of the part of the spacing alone. Momentum
+/// is a second evaluation of the same load: where it has farther to go, it is what the error is estimated from.
+fn first_order(
+    clouds: &[CloudLoads; IN_SPACE],
+    load: fn(&CloudLoads) -> f64,
+    part: fn(&Coefficients) -> f64,
+) -> LoadEstimate {
+    let [coarsest, coarser, before, last] = clouds;
+    let ratio = |cloud: &CloudLoads| cloud.factor / last.factor - 1.0;
+    let way = |cloud: &CloudLoads| (load(last) - load(cloud)).abs() / ratio(cloud);
+    let both = last.momentum.as_ref().zip(coarser.momentum.as_ref());
+    let second = both.map_or(0.0, |(last, before)| (part(last) - part(before)).abs() / ratio(coarser));
+    let change = (load(last) - load(before)).abs();
+    let spacing = (SAFETY * way(coarser).max(second)).max(change).max(FROM_COARSEST * way(coarsest));
     LoadEstimate { spacing, ..LoadEstimate::default() }
 }
 
@@ -329,6 +336,16 @@ mod tests {
             assert!((0.01..0.04).contains(&found.cl.half_width), "{found:?}");
         }
         assert_eq!(Convergence::of(&in_space(|h| h)[1..], 0.01), None);
+    }
+
+    #[test]
+    fn a_load_in_space_has_no_shorter_bar_than_its_momentum() {
+        let through = |cloud: CloudLoads| {
+            let cl = 0.3 - 0.01 * cloud.factor;
+            CloudLoads { momentum: Some(Coefficients { cl, ..Coefficients::default() }), ..cloud }
+        };
+        let found = Convergence::of(&in_space(|_| 0.29).map(through), 0.01).unwrap();
+        assert!((found.cl.spacing - 0.0125).abs() < 1e-12, "{found:?}");
     }
 
     #[test]
