@@ -34,7 +34,7 @@ pub(crate) fn gas<const D: usize>(
     ready: Option<Cloud<D>>,
 ) -> Result<Fluid<D>, RunError> {
     let (case, surface, motions) = (problem.case(), problem.surface(), problem.motions());
-    let scaled = spacing::scaled(case, factor);
+    let scaled = spacing::of_stage(case, factor);
     let mut cloud = match ready.filter(|_| sources.is_empty()) {
         Some(cloud) => cloud,
         None => Cloud::build(&spec(&scaled), surface, sources)?,

@@ -23,6 +23,12 @@ pub(crate) fn coarser(own: &Case, ratio: f64) -> Option<Case> {
     (one && numerics::divides(own, ratio)).then(|| scaled(own, ratio))
 }
 
+/// How much finer the cloud of the case `own` is than the one with `ratio` times the spacing where they differ least: a cloud with few particles
+/// per level has no fewer on the coarser one, and errors made far from the walls fall no faster than that.
+pub(crate) fn refinement(own: &Case, ratio: f64) -> f64 {
+    ratio.min(own.cloud.particles_per_level() / scaled(own, ratio).cloud.particles_per_level())
+}
+
 #[cfg(test)]
 mod tests {
     use std::path::Path;
@@ -63,6 +69,12 @@ mod tests {
     fn spacings_are_told_in_words() {
         let told = [COARSER, BETWEEN, 2.0_f64.sqrt()].map(times_the_spacing);
         assert_eq!(told, ["twice the spacing", "1.5 times the spacing", "1.41421 times the spacing"]);
+    }
+
+    #[test]
+    fn clouds_with_few_particles_per_level_are_refined_by_less_than_their_spacing() {
+        let refined = |layers: &str| refinement(&cloud("naca = \"0012\"", layers), COARSER);
+        assert_eq!([refined(""), refined("spacing = 0.1\nlayers = 4")], [2.0, 4.0 / 3.0]);
     }
 
     #[test]

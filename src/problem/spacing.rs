@@ -119,11 +119,18 @@ pub(crate) enum Forces {
 
 /// The case on one cloud where it leaves all of it to the program: for forces of small motions, which are surer on it than drag is.
 pub(crate) fn on_one_cloud<const D: usize>(case: Case, surface: Option<&Surface<D>>, wanted: Forces) -> Case {
-    if case.cloud.spacing.is_some() || case.accuracy.is_some() || surface.is_none() {
+    if case.cloud.spacing.is_some() || surface.is_none() {
         return case;
     }
     let mut asked = case;
+    if asked.accuracy.is_some() && D == 2 {
+        return asked;
+    }
+    // the coarser cloud that tells the error has half as many
     asked.cloud.layers = asked.cloud.layers.or(Some(FEW_LAYERS));
+    if asked.accuracy.is_some() {
+        return asked;
+    }
     asked.accuracy = Some(Accuracy { particles: SMALL_MOTION_PARTICLES[D - 2], ..Accuracy::in_dimension(D) });
     let one = Case { accuracy: None, ..with_cloud(&asked, surface).into_owned() };
     match surface.filter(|_| D == 2 && wanted == Forces::Table && one.cloud.wall_layers.is_none()) {
@@ -232,13 +239,30 @@ pub(crate) fn scaled(case: &Case, factor: f64) -> Case {
     case
 }
 
+/// The case of a stage of a run whose cloud has `factor` times the spacing. Clouds of a family are alike; those that a single cloud
+/// in the plane is begun on have as many particles per level as that one ([`begins_near`]).
+pub(crate) fn of_stage(case: &Case, factor: f64) -> Case {
+    let mut alike = scaled(case, factor);
+    if begins_near(case) {
+        alike.cloud.layers = case.cloud.layers;
+    }
+    alike
+}
+
+/// True for the steady flow on a single cloud in the plane. It begins on clouds that are coarser at the walls alone: loads on them differ by
+/// tenths of a per cent, not by several, so that shocks stand within a row or two of where they belong. On clouds that are
+/// coarser everywhere a section at Mach 0.84 takes 89 iterations on the last of 25,000 particles, on these 28.
+pub(crate) fn begins_near(case: &Case) -> bool {
+    crate::geometry::dimension(case) == 2 && !case.is_unsteady() && asked(case).is_none()
+}
+
 /// Particles of the cloud with a factor on the spacing of the case, whose own has `n`: as many more as the background has cells.
 pub(crate) fn sizes<'a, const D: usize>(
     case: &'a Case,
     surface: Option<&'a Surface<D>>,
     n: usize,
 ) -> impl Fn(f64) -> f64 + 'a {
-    let cells = move |factor: f64| count(&CloudSpec::<D>::of_case(&scaled(case, factor)), surface, &[]).ok();
+    let cells = move |factor: f64| count(&CloudSpec::<D>::of_case(&of_stage(case, factor)), surface, &[]).ok();
     move |factor| {
         let over = || Some(cells(factor)? as f64 / cells(1.0)? as f64);
         let alike = || factor.powi(-(D as i32));

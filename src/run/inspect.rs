@@ -180,7 +180,7 @@ fn look<const D: usize>(
     let pixels = pixels(surface, &cloud.tree.bounds());
     let sizes = &spacing::sizes(case, surface, particles);
     let family = spacing::asked(case).map(|asked| accuracy::family(case, &asked, sizes, D)).unwrap_or_default();
-    let finest = family.last().map(|stage| spacing::scaled(case, stage.factor));
+    let finest = family.last().map(|stage| spacing::of_stage(case, stage.factor));
     warnings.extend(finest.iter().flat_map(|on| rough(on, surface)));
     let sized = Sized { case, particles, sizes, dimension: D, period, pixels, evaluation, pilot };
     let report = CloudReport {
@@ -232,7 +232,7 @@ impl SampleCloud {
 fn sample_cloud<const D: usize>(problem: &ProblemIn<D>) -> SampleCloud {
     let cells = |factor: f64| {
         let cells =
-            count(&CloudSpec::<D>::of_case(&spacing::scaled(problem.case(), factor)), problem.surface(), &[]).ok()?;
+            count(&CloudSpec::<D>::of_case(&spacing::of_stage(problem.case(), factor)), problem.surface(), &[]).ok()?;
         Some(cells as f64)
     };
     let case = problem.case();

@@ -35,7 +35,7 @@ use super::time_left::Portion;
 use crate::case::{Case, Flutter as Plan, GasResponse, LimitCycles, Matching};
 use crate::geometry::dimension;
 use crate::physics::atmosphere;
-use crate::problem::coarser::{BETWEEN, COARSER, times_the_spacing};
+use crate::problem::coarser::{BETWEEN, COARSER, refinement, times_the_spacing};
 use crate::problem::{Problem, RunError, StreamRatio, spacing, supported};
 use crate::record::flutter::remedy;
 use crate::record::flutter::{Boundary, FlutterAt};
@@ -343,7 +343,7 @@ impl Place<'_> {
             let outer = part(if ratio == COARSER { 1 } else { 2 }, shocks);
             match self.on_coarser(at, ratio, &mut Within { outer, monitor: &mut *monitor })? {
                 Asked::Stopped => return Ok(false),
-                Asked::Told(coarse) => others.push((ratio, *coarse)),
+                Asked::Told(coarse) => others.push((refinement(self.problem.given(), ratio), *coarse)),
                 Asked::Silent => {}
             }
         }

@@ -3,10 +3,13 @@ use super::accuracy;
 use super::stage::{Stage, Task};
 use crate::case::{Case, Initial, Temporal};
 use crate::problem::numerics::{balance, divides, is_automatic, most, relaxation};
-use crate::problem::spacing::asked;
+use crate::problem::spacing::{asked, begins_near};
 
-/// Particles above which a steady case is started on one coarser cloud, on two and so on; in 2-D and 3-D.
+/// Particles above which a case is started on one coarser cloud, on two and so on; in 2-D and 3-D.
 const START: [&[usize]; 2] = [&[2_500, 9_000, 33_000, 120_000], &[15_000, 80_000]];
+/// Particles above which a cloud that a steady flow in the plane begins on begins on a coarser one itself, and how often at most.
+const NEAR_START: f64 = 3_500.0;
+const NEAR_STARTS: i32 = 7;
 /// Harmonics at which `number = "auto"` begins, and what it adds.
 const FIRST: usize = 1;
 const MORE: usize = 2;
@@ -28,8 +31,7 @@ pub(crate) fn plan(
     let relaxes = relaxation(case).is_some() && !case.bodies.is_empty() && !given;
     let steady = |factor: f64, cycle: u32| Stage { factor, cycle, ..Stage::PLAIN };
     if relaxes {
-        let coarser = START[dimension - 2].iter().filter(|most| n > **most).count() as i32;
-        let factors: Vec<f64> = (1..=coarser).rev().map(|k| 2f64.powi(k)).filter(|f| divides(case, *f)).collect();
+        let factors = starts(case, (n, sizes), dimension);
         if let Some(stages) = balance_from_coarser(case, &factors, least) {
             return stages;
         }
@@ -41,6 +43,15 @@ pub(crate) fn plan(
     let cycle = all.last().map_or(0, |s: &Stage| s.cycle);
     all.extend(in_time(case, None, least).into_iter().map(|task| Stage { cycle, task, ..Stage::PLAIN }));
     at_all_points(case, all)
+}
+
+/// Factors on the spacing of the coarser clouds that a case begins on.
+fn starts(case: &Case, (n, sizes): (usize, &dyn Fn(f64) -> f64), dimension: usize) -> Vec<f64> {
+    let coarser = match begins_near(case) {
+        true => (0..NEAR_STARTS).take_while(|k| sizes(2f64.powi(*k)) > NEAR_START).count(),
+        false => START[dimension - 2].iter().filter(|most| n > **most).count(),
+    };
+    (1..=coarser as i32).rev().map(|k| 2f64.powi(k)).filter(|f| divides(case, *f)).collect()
 }
 
 /// The stages of a harmonic balance that begins on coarser clouds with these factors on their spacing, where it can: the steady flow and

@@ -8,7 +8,7 @@ use super::super::solution::Solution;
 use super::cloud_error;
 use super::record::{Column, Matrices};
 use crate::case::{AnyMode, Cloud, Gaf, Mode};
-use crate::problem::coarser::COARSER;
+use crate::problem::coarser::{COARSER, refinement};
 use crate::problem::{Problem, RunError};
 use crate::record::summary::Summary;
 
@@ -23,7 +23,7 @@ pub(super) fn columns(
     keep: &mut dyn FnMut(&Matrices) -> Result<(), RunError>,
     monitor: &mut dyn Monitor,
 ) -> Result<bool, RunError> {
-    let mut coarse = Vec::new();
+    let (mut coarse, mut ratio) = (Vec::new(), COARSER);
     for &k in &plan.reduced_frequencies {
         for mode in plan.all_modes() {
             let swing = Swing { plan, mode, k };
@@ -50,14 +50,16 @@ pub(super) fn columns(
             }
             matrices.columns.push(column);
             keep(matrices)?;
-            match swing.on_coarser(&own(1.0)?.on_cloud(cloud)?, monitor)? {
+            let one = own(1.0)?.on_cloud(cloud)?;
+            ratio = refinement(one.given(), COARSER);
+            match swing.on_coarser(&one, monitor)? {
                 Asked::Stopped => return Ok(false),
                 Asked::Told(column) => coarse.push(*column),
                 Asked::Silent => {}
             }
         }
     }
-    cloud_error::tell(&mut matrices.columns, &[(COARSER, coarse)]);
+    cloud_error::tell(&mut matrices.columns, &[(ratio, coarse)]);
     keep(matrices)?;
     Ok(true)
 }

@@ -17,7 +17,7 @@ use super::cloud_error;
 use super::record::{Column, Matrices, Solved};
 use crate::case::{AnyMode, Case, Cloud, Gaf, Mode};
 use crate::geometry::dimension;
-use crate::problem::coarser::{BETWEEN, COARSER, coarser, times_the_spacing};
+use crate::problem::coarser::{BETWEEN, COARSER, coarser, refinement, times_the_spacing};
 use crate::problem::{Problem, RunError, spacing};
 
 /// Fills in the columns of all modes and frequencies of `plan` with their error bars, and calls `keep` after each frequency; false when
@@ -68,7 +68,7 @@ pub(super) fn columns(
         match asked.about(&coarse, &mut add, &mut Within { outer, monitor: &mut Quiet { monitor } }) {
             Ok(Some(flow)) if flow.solved => {
                 shocks |= flow.shocks;
-                others.push((ratio, other));
+                others.push((refinement(one.given(), ratio), other));
             }
             Ok(Some(_)) => monitor.note("the coarser cloud tells nothing: the steady flow on it did not converge"),
             Ok(None) => return Ok(false),
