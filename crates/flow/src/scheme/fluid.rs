@@ -74,15 +74,9 @@ pub struct Work<const D: usize, S = f64> {
     /// What the limiter and the steepness stay, where they are frozen.
     pub frozen: Option<Arc<Frozen<D>>>,
     /// The same with the change along a direction, once derivatives have been asked for.
-    pub changing: Option<Box<Changing<D>>>,
-}
-
-/// Storage of a derivative.
-pub struct Changing<const D: usize> {
-    /// That of the evaluation.
-    pub work: Work<D, Dual>,
-    /// What sides hold, as in [`Frame::outer`](super::Frame::outer).
-    pub outer: Vec<[Primitive<D, Dual>; 3]>,
+    pub changing: Option<Box<Work<D, Dual>>>,
+    /// States that sides hold beside the flow at hand, as in [`Frame::held`](super::Frame::held).
+    pub held: Vec<[Primitive<D, S>; 3]>,
 }
 
 /// What a limiter does in one state.
@@ -103,6 +97,7 @@ impl<const D: usize, S: Scalar> Work<D, S> {
             steepness: vec![S::constant(0.0); n],
             frozen: None,
             changing: None,
+            held: Vec::new(),
         }
     }
 }

@@ -43,7 +43,7 @@ pub mod wall_state;
 
 pub use deforming_surface::DeformingSurface;
 pub use discretisation::CloudMotion;
-pub use fluid::{Fluid, Work};
+pub use fluid::{FarField, Fluid, Work};
 pub use frame::{Discretisation, Frame, Taken};
 pub use has_gas::{Exchange, HasGas};
 pub use reclouding::Reclouded;

@@ -3,40 +3,59 @@
 //! A side holds a state: that of the far field, or that of the start. What differs from it near the side leaves as waves do
 //! ([`crate::physics::outgoing`]): the disturbance of the last particle is continued along the line through it and the one
 //! behind it, and the part of it that moves outwards is added to what is held.
-use super::fluid::{Fluid, Work};
+use super::fluid::{FarField, Fluid, Work};
 use super::frame::Frame;
 use super::lanes::Number;
 use crate::case::Side;
+use crate::math::Vector;
 use crate::math::dual::Dual;
-use crate::math::parallel::sweep_each_slot;
+use crate::math::parallel::{sweep_each, sweep_each_slot};
 use crate::physics::Primitive;
 use crate::physics::outgoing::outgoing;
 
 /// Greatest part of the way between two particles by which a disturbance is continued to a side.
 const FURTHEST: f64 = 1.0;
 
+/// Numbers that the far field is known in: plain ones, or those that carry their change with the state.
+pub(super) trait OnSides: Number {
+    /// State of the far field `field` at `x` when the bodies feel the force `force`.
+    fn far<const D: usize>(field: &dyn FarField<D>, x: &Vector<D>, force: &Vector<D, Self>) -> Primitive<D, Self>;
+}
+
+impl OnSides for f64 {
+    fn far<const D: usize>(field: &dyn FarField<D>, x: &Vector<D>, force: &Vector<D>) -> Primitive<D> {
+        field.state(x, force)
+    }
+}
+
+impl OnSides for Dual {
+    fn far<const D: usize>(field: &dyn FarField<D>, x: &Vector<D>, force: &Vector<D, Self>) -> Primitive<D, Self> {
+        field.changing(x, force)
+    }
+}
+
 impl<const D: usize> Fluid<D> {
-    /// Brings what sides hold to the time of `frame` and, in the far field, to the force of the wall states in `work`.
-    pub(super) fn hold_sides(&self, frame: &mut Frame<D>, work: &Work<D>) {
-        let force = self.pressure_force(frame, work);
+    /// Brings what sides hold of the state at the start to where the particles of `frame` are.
+    pub(super) fn hold_start(&self, frame: &mut Frame<D>) {
         let cloud = &self.discretisation.cloud;
-        let mut outer = std::mem::take(&mut frame.outer);
-        let still = self.cloud_motion.is_still();
-        sweep_each_slot(&mut outer, |k, q| match cloud.outer[k].side {
-            Side::FarField => *q = cloud.beside(k).map(|i| self.far_field.state(&frame.place(i), &force)),
-            _ if still => {}
-            _ => *q = cloud.beside(k).map(|i| (self.held)(&frame.place(i))),
+        let mut held = std::mem::take(&mut frame.held);
+        sweep_each_slot(&mut held, |k, q| {
+            if !matches!(cloud.outer[k].side, Side::FarField) {
+                *q = cloud.beside(k).map(|i| (self.held)(&frame.place(i)));
+            }
         });
-        frame.outer = outer;
+        frame.held = held;
     }
 
-    /// What sides hold, with the change that goes with the wall states in `work`; far from the bodies alone does it change.
-    pub(super) fn hold_changing(&self, frame: &Frame<D>, work: &Work<D, Dual>, outer: &mut [[Primitive<D, Dual>; 3]]) {
+    /// Sets what sides hold in `work`: what `frame` says of them, and in the far field what goes with the force of the wall states in
+    /// `work`.
+    pub(super) fn hold_sides<S: OnSides>(&self, frame: &Frame<D>, work: &mut Work<D, S>) {
         let force = self.pressure_force(frame, work);
-        let cloud = &self.discretisation.cloud;
-        sweep_each_slot(outer, |k, q| match cloud.outer[k].side {
-            Side::FarField => *q = cloud.beside(k).map(|i| self.far_field.changing(&frame.place(i), &force)),
-            _ => *q = frame.outer[k].each_ref().map(Primitive::constant),
+        let (cloud, held) = (&self.discretisation.cloud, &frame.held);
+        work.held.resize_with(held.len(), || held[0].each_ref().map(Primitive::constant));
+        sweep_each(&mut work.held, |k| match cloud.outer[k].side {
+            Side::FarField => cloud.beside(k).map(|i| S::far(&*self.far_field, &frame.place(i), &force)),
+            _ => held[k].each_ref().map(Primitive::constant),
         });
     }
 

@@ -24,7 +24,8 @@ impl<const D: usize> Fluid<D> {
     pub fn fill_states(&self, frame: &Frame<D>, u: &[f64], work: &mut Work<D>) {
         self.fill_fluid(frame, u, work);
         self.fill_walls(frame, work);
-        self.fill_outside(frame, &frame.outer, work);
+        self.hold_sides(frame, work);
+        self.fill_outside(frame, work);
     }
 
     /// Fills the states of the evolved particles.
@@ -62,13 +63,8 @@ impl<const D: usize> Fluid<D> {
     }
 
     /// Fills the states of outer particles and images from those of the fluid and the walls, and what sides hold.
-    pub(super) fn fill_outside<S: Number>(
-        &self,
-        frame: &Frame<D>,
-        held: &[[Primitive<D, S>; 3]],
-        work: &mut Work<D, S>,
-    ) {
-        let cloud = &frame.discretisation.cloud;
+    pub(super) fn fill_outside<S: Number>(&self, frame: &Frame<D>, work: &mut Work<D, S>) {
+        let (cloud, held) = (&frame.discretisation.cloud, &work.held);
         let (inside, rest) = work.state.split_at_mut(cloud.n_rows());
         let (fluid, walls) = inside.split_at(cloud.n_fluid);
         let (outer, ghosts) = rest.split_at_mut(cloud.outer.len());
