@@ -8,6 +8,7 @@ use super::discretisation::CloudMotion;
 use super::frame::Discretisation;
 use super::reconstruct::{Factors, Gradient, Reconstruction};
 use super::viscous::ViscousModel;
+use super::wall_state::WallCondition;
 use crate::case::{Flux, Limiter};
 use crate::cloud::Cloud;
 use crate::math::Vector;
@@ -106,6 +107,12 @@ impl<const D: usize> Fluid<D> {
     /// The unknowns on a cloud: density, momentum and energy of every fluid particle; density measures a residual.
     pub fn unknowns(cloud: &Cloud<D>) -> [Unknowns; 1] {
         [Unknowns::new(Name::Gas, cloud.n_fluid, n_variables(D)).measured_by(1)]
+    }
+
+    /// Boundary condition at the body with this number.
+    #[inline]
+    pub fn wall_condition(&self, body: u16) -> WallCondition {
+        self.viscous_model.as_ref().map_or(WallCondition::Slip, |m| m.wall_condition(body))
     }
 
     /// The state at the start.

@@ -50,4 +50,5 @@ pub use reclouding::Reclouded;
 pub use transfer::RemapLedger;
 pub use travel::{ParticleKinematics, Travel};
 pub use view::View;
-pub use viscous::{ViscousModel, WallCondition};
+pub use viscous::ViscousModel;
+pub use wall_state::WallCondition;
