@@ -84,17 +84,8 @@ impl<const D: usize> System for Led<'_, D> {
         }
     }
 
-    fn update_boundary_state(&self, u: &[f64], work: &mut Work<D>, frame: &mut Frame<D>) {
-        self.coupled.update_boundary_state(u, work, frame);
-    }
-
     fn rhs(&self, frame: &Frame<D>, u: &[f64], work: &mut Work<D>, du: &mut [f64]) {
         self.coupled.rhs(frame, u, work, du);
-        self.lead_rates(frame, u, du);
-    }
-
-    fn rhs_with_boundary(&self, u: &[f64], work: &mut Work<D>, frame: &mut Frame<D>, du: &mut [f64]) {
-        self.coupled.rhs_with_boundary(u, work, frame, du);
         self.lead_rates(frame, u, du);
     }
 

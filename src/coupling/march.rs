@@ -192,8 +192,8 @@ impl<'a, const D: usize> March<'a, D> {
         self.place(dt, s.time);
         self.hand_over(dt);
         let range = self.system.unknowns_of(Name::Gas);
-        let (gas, frame) = (&mut self.u[range.clone()], &mut self.frame.gas);
-        self.system.fluid().rhs_with_boundary(gas, &mut self.work.gas, frame, &mut self.du);
+        let gas = &mut self.u[range.clone()];
+        self.system.fluid().rhs(&self.frame.gas, gas, &mut self.work.gas, &mut self.du);
         let (start, du) = (&self.start[range], &self.du);
         sweep_rows(gas, 1, |k, row| row[0] = s.start * start[k] + s.last * row[0] + s.step * dt * du[k]);
         self.evaluations += 1;
@@ -354,7 +354,6 @@ impl<const D: usize> Integrator<Coupled<D>> for March<'_, D> {
         SSPRK3.iter().for_each(|s| self.stage(s, dt));
         self.place(dt, 1.0);
         self.hand_over(dt);
-        self.system.update_boundary_state(&self.u, &mut self.work, &mut self.frame);
         let crowded = self.system.check_frame(&self.frame).err();
         let hint = match crowded {
             Some(_) => CROWDED,

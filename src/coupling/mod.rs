@@ -256,19 +256,9 @@ impl<const D: usize> System for Coupled<D> {
         }
     }
 
-    fn update_boundary_state(&self, u: &[f64], work: &mut Work<D>, frame: &mut Frame<D>) {
-        self.fluid.update_boundary_state(&u[self.unknowns_of(Name::Gas)], &mut work.gas, &mut frame.gas);
-    }
-
     fn rhs(&self, frame: &Frame<D>, u: &[f64], work: &mut Work<D>, du: &mut [f64]) {
         let gas = self.unknowns_of(Name::Gas);
         self.fluid.rhs(&frame.gas, &u[gas.clone()], &mut work.gas, &mut du[gas]);
-        self.structures(frame, u, work, du);
-    }
-
-    fn rhs_with_boundary(&self, u: &[f64], work: &mut Work<D>, frame: &mut Frame<D>, du: &mut [f64]) {
-        let gas = self.unknowns_of(Name::Gas);
-        self.fluid.rhs_with_boundary(&u[gas.clone()], &mut work.gas, &mut frame.gas, &mut du[gas]);
         self.structures(frame, u, work, du);
     }
 

@@ -2,7 +2,7 @@
 use std::path::Path;
 
 use super::build_cloud;
-use crate::case::{Case, Side, Sides};
+use crate::case::{Case, Sides};
 use crate::cloud::Cloud;
 use crate::geometry::dimension;
 use crate::math::Vector;
@@ -96,7 +96,7 @@ fn snapshot<const D: usize>(cloud: &Cloud<D>) -> Snapshot {
 
 /// The condition of each side.
 fn conditions(b: &Sides, dimension: usize) -> Vec<(&'static str, serde_json::Value)> {
-    let all: [[Side; 2]; 3] = [[b.x_min, b.x_max], [b.y_min, b.y_max], [b.z_min, b.z_max]];
+    let all = b.pairs();
     let sides = SIDES.iter().flatten().zip(all.iter().flatten()).take(2 * dimension);
     sides.map(|(name, side)| (*name, serde_json::to_value(side).unwrap_or_default())).collect()
 }

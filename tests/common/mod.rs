@@ -3,7 +3,10 @@
 use std::path::Path;
 
 use alula::case::{Case, read};
-use alula::scheme::Fluid;
+use alula::math::Vector;
+use alula::math::dual::Dual;
+use alula::physics::Primitive;
+use alula::scheme::{FarField, Fluid};
 use alula::time::ordinary::Ordinary;
 
 /// Uniform stream on a jittered cloud with two levels, plane or solid.
@@ -75,4 +78,21 @@ pub(crate) fn with_threads<T: Send>(n: usize, f: impl FnOnce() -> T + Send) -> T
 /// Largest absolute value; infinite when one is NaN.
 pub(crate) fn largest(values: impl IntoIterator<Item = f64>) -> f64 {
     values.into_iter().fold(0.0, |m, v| if v.is_nan() { f64::INFINITY } else { m.max(v.abs()) })
+}
+
+/// A far field that the bodies do not change.
+pub(crate) struct Uniform<const D: usize>(pub(crate) Primitive<D>);
+
+impl<const D: usize> FarField<D> for Uniform<D> {
+    fn state(&self, _: &Vector<D>, _: &Vector<D>) -> Primitive<D> {
+        self.0
+    }
+
+    fn changing(&self, _: &Vector<D>, _: &Vector<D, Dual>) -> Primitive<D, Dual> {
+        Primitive::constant(&self.0)
+    }
+
+    fn pressure(&self) -> f64 {
+        self.0.pressure
+    }
 }

@@ -1,11 +1,15 @@
 //! Layers on bodies that break them: thin edges, corners, bends, other walls.
 
+use std::sync::Arc;
+
+use crate::common::Uniform;
 use alula::cloud::conservative::conservative;
 use alula::cloud::layers::End;
 use alula::cloud::{Cloud, CloudSpec, Diagnosis, Operators};
 use alula::geometry::load_surface;
 use alula::math::Vector;
 use alula::physics::Primitive;
+use alula::scheme::Fluid;
 use alula::scheme::wall_fits::WallFits;
 use alula::system::{Instant, System};
 
@@ -244,8 +248,8 @@ fn rest_residual<const D: usize>(body: &str, rest: &str) -> f64 {
     let (fluid, mut u) = alula::run::build_solver::<D>(&case, std::path::Path::new(".")).unwrap();
     let still = Primitive { density: 1.0, velocity: Vector::ZERO, pressure: 1.0 / fluid.gas.gamma };
     u.chunks_exact_mut(D + 2).for_each(|row| fluid.gas.conserved(&still).store(row));
-    let mut frame = fluid.frame(&Instant::still(0.0), &u);
-    frame.outer.fill([still; 3]);
+    let fluid = Fluid { far_field: Arc::new(Uniform(still)), ..fluid };
+    let frame = fluid.frame(&Instant::still(0.0), &u);
     let (mut work, mut du) = (fluid.work(), vec![0.0; u.len()]);
     fluid.rhs(&frame, &u, &mut work, &mut du);
     du.iter().fold(0.0, |m: f64, v| if v.is_nan() { f64::INFINITY } else { m.max(v.abs()) })

@@ -35,7 +35,6 @@ impl System for Decay {
             frame.1 = rate[0].time - rate[1].time;
         }
     }
-    fn update_boundary_state(&self, _: &[f64], (): &mut (), _: &mut (f64, f64)) {}
     fn work(&self) {}
     fn rhs(&self, _: &(f64, f64), u: &[f64], (): &mut (), du: &mut [f64]) {
         du[0] = -u[0];

@@ -21,8 +21,7 @@ pub(super) fn cuts<const D: usize>(case: &Case, bounds: &Bounds<D>) -> Vec<Cut> 
         return Vec::new();
     }
     let limits = CloudSpec::<D>::of_case(case).limits();
-    let b = &case.boundary;
-    let sides = [[b.x_min, b.x_max], [b.y_min, b.y_max], [b.z_min, b.z_max]];
+    let sides = case.boundary.pairs();
     let mut all = Vec::new();
     for axis in 0..D {
         for (below, place) in [(false, limits.min[axis]), (true, limits.max[axis])] {

@@ -67,7 +67,7 @@ fn planes<const D: usize>(case: &Case, view: &View<'_, D>, zone: &Bounds<D>) -> 
     let clamp = |v: &Vector<D>| Vector::from_fn(|d| v[d].clamp(domain.min[d], domain.max[d]));
     let region = Bounds { min: clamp(&zone.min), max: clamp(&zone.max) };
     let s = &case.boundary;
-    let conditions = [[s.x_min, s.x_max], [s.y_min, s.y_max], [s.z_min, s.z_max]];
+    let conditions = s.pairs();
     let mut tiles = Vec::new();
     for (axis, sign) in (0..D).flat_map(|axis| [(axis, -1.0), (axis, 1.0)]) {
         let low = sign < 0.0;

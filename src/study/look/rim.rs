@@ -119,9 +119,7 @@ pub(crate) fn planes<const D: usize>(
     case: &Case,
     domain: &crate::math::Bounds<D>,
 ) -> impl Iterator<Item = (usize, f64, f64)> + use<D> {
-    let b = &case.boundary;
-    let sides = [[&b.x_min, &b.x_max], [&b.y_min, &b.y_max], [&b.z_min, &b.z_max]];
-    let symmetric = sides.map(|pair| pair.map(|side| *side == Side::Symmetry));
+    let symmetric = case.boundary.pairs().map(|pair| pair.map(|side| side == Side::Symmetry));
     let (low, high) = (domain.min, domain.max);
     (0..D).flat_map(move |d| {
         let ends = [(low[d], -1.0), (high[d], 1.0)].into_iter().zip(symmetric[d]);

@@ -56,10 +56,8 @@ pub(crate) fn span_load<const D: usize>(
 
 /// True where at most one side along the span is a wall or an image, and none above or below.
 fn in_free_air(case: &Case) -> bool {
-    let b = &case.boundary;
-    let mirrors = |side: &case::Side| matches!(side, case::Side::Symmetry | case::Side::Periodic);
-    let both = mirrors(&b.y_min) && mirrors(&b.y_max);
-    !both && b.y_min != case::Side::Periodic && !mirrors(&b.z_min) && !mirrors(&b.z_max)
+    let [_, y, z] = case.boundary.pairs();
+    !y.iter().all(|side| side.has_images()) && y[0] != case::Side::Periodic && !z.iter().any(|side| side.has_images())
 }
 
 /// Fins and winglets, which leave the plane of the wake.

@@ -120,10 +120,10 @@ impl<'a, S: Marches<D>, const D: usize> SmallMotion<'a, S, D> {
         let mut work = system.work();
         let frame = system.frame(&Instant::formula(0.0, &[]).with(&system.placing().values(state)), state);
         let (gas, own) = (system.gas(), system.gas_state(state));
-        let (mut gas_frame, mut gas_work) = (system.gas_frame(&frame).clone(), gas.work());
+        let (gas_frame, mut gas_work) = (system.gas_frame(&frame).clone(), gas.work());
         if frozen {
-            gas.freeze_limiter(&mut gas_frame, own, system.gas_work(&mut work));
-            gas.freeze_limiter(&mut gas_frame, own, &mut gas_work);
+            gas.freeze_limiter(&gas_frame, own, system.gas_work(&mut work));
+            gas.freeze_limiter(&gas_frame, own, &mut gas_work);
         }
         let linear = Linear::new(gas, gas_frame, own, gas_work);
         let (columns, still) = (Vec::new(), Vec::new());
@@ -179,7 +179,7 @@ impl<'a, S: Marches<D>, const D: usize> SmallMotion<'a, S, D> {
         self.system.placing().set(coordinates, &mut u);
         self.system.place(&Instant::formula(0.0, terms).with(coordinates), &mut self.frame);
         let mut du = vec![0.0; u.len()];
-        self.system.rhs_with_boundary(&u, &mut self.work, &mut self.frame, &mut du);
+        self.system.rhs(&self.frame, &u, &mut self.work, &mut du);
         let loads = self.loads(&u);
         (du[self.system.gas_unknowns()].to_vec(), loads)
     }
@@ -207,7 +207,6 @@ impl<'a, S: Marches<D>, const D: usize> SmallMotion<'a, S, D> {
         let sides = [1.0, -1.0].map(|sign| {
             let mut u = self.state.clone();
             u[own.clone()].iter_mut().zip(v).for_each(|(u, v)| *u += sign * step * v);
-            self.system.update_boundary_state(&u, &mut self.work, &mut self.frame);
             self.loads(&u)
         });
         sides[0].iter().zip(&sides[1]).map(|(a, b)| (a - b) / (2.0 * step)).collect()

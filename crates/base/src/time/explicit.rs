@@ -97,7 +97,7 @@ impl<'a, S: System> Explicit<'a, S> {
 
     fn evaluate(&mut self, dt: f64, fraction: f64) {
         self.place(dt, fraction);
-        self.system.rhs_with_boundary(&self.u, &mut self.work, &mut self.frame, &mut self.du);
+        self.system.rhs(&self.frame, &self.u, &mut self.work, &mut self.du);
         self.evaluations += 1;
     }
 
@@ -172,7 +172,6 @@ impl<S: System> Integrator<S> for Explicit<'_, S> {
         self.past.time = if dt == left { self.until } else { self.past.time + dt };
         self.past.last = dt;
         self.past.iteration += 1;
-        self.system.update_boundary_state(&self.u, &mut self.work, &mut self.frame);
         let crowded = self.system.check_frame(&self.frame).err();
         let hint = match crowded {
             Some(_) => CROWDED,

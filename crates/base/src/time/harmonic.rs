@@ -277,13 +277,6 @@ impl<S: System> System for HarmonicBalance<'_, S> {
         }
     }
 
-    fn update_boundary_state(&self, u: &[f64], work: &mut Self::Work, frame: &mut Self::Frame) {
-        for (n, frame) in frame.iter_mut().enumerate() {
-            self.look(u, n, &mut work.u);
-            self.system.update_boundary_state(&work.u, &mut work.work, frame);
-        }
-    }
-
     #[doc(alias = "eq32")]
     fn rhs(&self, frame: &Self::Frame, u: &[f64], work: &mut Self::Work, du: &mut [f64]) {
         let (derivative, count) = (&self.derivative, self.held.count());

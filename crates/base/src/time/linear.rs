@@ -61,8 +61,8 @@ impl<'a, S: Implicit> Linear<'a, S> {
         let mut rates = vec![0.0; rows];
         system.rates(&frame, state, &mut work, &mut rates);
         let n = state.len();
-        let (mut frame, mut rest) = (frame, vec![0.0; n]);
-        system.rhs_with_boundary(state, &mut work, &mut frame, &mut rest);
+        let mut rest = vec![0.0; n];
+        system.rhs(&frame, state, &mut work, &mut rest);
         let mut scale = Vec::with_capacity(n);
         for Placed { field, rows, .. } in placed(system.fields()) {
             scale.extend(rates[rows].iter().flat_map(|r| std::iter::repeat_n(1.0 / r, field.block)));
@@ -93,7 +93,7 @@ impl<'a, S: Implicit> Linear<'a, S> {
     /// out = ∂R/∂U v, exact or by a difference to one side, which takes half as long.
     fn product(&mut self, v: &[f64], exact: bool, out: &mut [f64]) {
         if exact {
-            return self.system.derivative(&self.state, v, (&mut self.work, &mut self.frame), out);
+            return self.system.jvp(&self.frame, [&self.state, v], &mut self.work, out);
         }
         let size = norm(v);
         if size == 0.0 {
@@ -101,7 +101,7 @@ impl<'a, S: Implicit> Linear<'a, S> {
         }
         let (step, state) = (HASTY * self.size / size, &self.state);
         sweep_slots(&mut self.moved, |i, u| *u = state[i] + step * v[i]);
-        self.system.rhs_with_boundary(&self.moved, &mut self.work, &mut self.frame, &mut self.found);
+        self.system.rhs(&self.frame, &self.moved, &mut self.work, &mut self.found);
         let (there, rest) = (&self.found, &self.rest);
         sweep_slots(out, |i, o| *o = (there[i] - rest[i]) / step);
     }

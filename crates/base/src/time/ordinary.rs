@@ -41,8 +41,6 @@ impl<F: Fn(f64, &[f64], &mut [f64]) + Sync> System for Ordinary<F> {
         *time = at.time;
     }
 
-    fn update_boundary_state(&self, _: &[f64], (): &mut (), _: &mut f64) {}
-
     fn rhs(&self, time: &f64, u: &[f64], (): &mut (), du: &mut [f64]) {
         (self.f)(*time, u, du);
     }

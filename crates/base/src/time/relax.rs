@@ -211,7 +211,7 @@ impl<'a, S: Implicit> Relax<'a, S> {
         if self.moves() {
             system.place(&Instant::still(0.0).with(&system.placing().values(&self.u)), &mut self.frame);
         }
-        system.rhs_with_boundary(&self.u, &mut self.work, &mut self.frame, &mut self.residual);
+        system.rhs(&self.frame, &self.u, &mut self.work, &mut self.residual);
         if !goes_on {
             // what the free stream does to a structure says nothing of its size: each field counts in its own units
             weigh(system.fields(), Arc::make_mut(&mut self.scale), &[]);
@@ -228,7 +228,6 @@ impl<'a, S: Implicit> Relax<'a, S> {
     /// Brings the frame to an instant.
     pub fn set_frame(&mut self, at: &Instant<'_>) {
         self.system.place(at, &mut self.frame);
-        self.system.update_boundary_state(&self.u, &mut self.work, &mut self.frame);
     }
 
     /// Lets particles that travel choose where they go; see [`plan_lagrangian_step`](crate::system::System::plan_lagrangian_step).
@@ -279,7 +278,6 @@ impl<'a, S: Implicit> Relax<'a, S> {
             return;
         }
         self.system.place(at, &mut self.frame);
-        self.system.update_boundary_state(u, &mut self.work, &mut self.frame);
         self.system.rates(&self.frame, u, &mut self.work, &mut self.rate);
         let cfl = (STEP_CFL * self.control.cfl).min(self.control.cfl_max);
         let shift = Shift { rates: &self.rate, cfl, coefficient: rate, reach: Reach::Near };
@@ -312,7 +310,7 @@ impl<'a, S: Implicit> Relax<'a, S> {
         let (system, placing) = (self.system, self.system.placing());
         system.prescribe(term.formula.time(), &mut self.u);
         term.formula.at(&placing.values(&self.u), |at| system.place(at, &mut self.frame));
-        system.rhs_with_boundary(&self.u, &mut self.work, &mut self.frame, &mut self.residual);
+        system.rhs(&self.frame, &self.u, &mut self.work, &mut self.residual);
         system.rates(&self.frame, &self.u, &mut self.work, &mut self.rate);
         let (rate, coefficient) = (&self.rate, term.rate());
         sweep(Arc::make_mut(&mut self.scale), |i| 1.0 / (rate[i] + coefficient));

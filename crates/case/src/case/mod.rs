@@ -388,7 +388,14 @@ pub struct Sides {
     pub z_max: Side,
 }
 
-/// Boundary condition on a side of the domain.
+impl Sides {
+    /// Conditions on the sides of smallest and largest coordinate along each axis.
+    pub const fn pairs(&self) -> [[Side; 2]; 3] {
+        [[self.x_min, self.x_max], [self.y_min, self.y_max], [self.z_min, self.z_max]]
+    }
+}
+
+/// Boundary condition on a side of the domain. What the gas does at an open side stands in `scheme::sides`.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Side {
@@ -406,6 +413,13 @@ pub enum Side {
     Symmetry,
     /// Periodicity with the opposite side.
     Periodic,
+}
+
+impl Side {
+    /// True where images of the gas are beyond the side: at planes of symmetry and periodic sides.
+    pub const fn has_images(self) -> bool {
+        matches!(self, Self::Symmetry | Self::Periodic)
+    }
 }
 
 /// Initial field.

@@ -3,35 +3,25 @@
 //! The residual is evaluated with numbers that carry their change along v ([`Dual`]): gradients and fits are linear, and the formulas at
 //! particles, walls, sides and edges give the derivative that belongs to their value. What states change of the boundary (the far
 //! field's circulation) is in it. Where a formula has a kink (a limiter's bound, an upwind choice), the side counts on which the state is.
-use super::fluid::{Changing, Fluid, Work};
+use super::fluid::{Fluid, Work};
 use super::frame::Frame;
 use crate::math::Vector;
 use crate::math::dual::Dual;
-use crate::physics::{Conserved, Primitive};
+use crate::physics::Conserved;
 
 impl<const D: usize> Fluid<D> {
     /// out = ∂R/∂U v at the state `u`.
-    pub(super) fn residual_change(
-        &self,
-        frame: &Frame<D>,
-        (u, v): (&[f64], &[f64]),
-        work: &mut Work<D>,
-        out: &mut [f64],
-    ) {
-        let mut storage = work.changing.take().unwrap_or_else(|| Box::new(self.changing(frame)));
-        let Changing { work: changing, outer } = &mut *storage;
+    pub(super) fn residual_change(&self, frame: &Frame<D>, [u, v]: [&[f64]; 2], work: &mut Work<D>, out: &mut [f64]) {
+        let fresh = || Box::new(Work::new(self.discretisation.cloud.len()));
+        let mut storage = work.changing.take().unwrap_or_else(fresh);
+        let changing = &mut *storage;
         changing.frozen.clone_from(&work.frozen);
         self.fill_rows(frame, |i| along(&Conserved::of_row(u, i), &Conserved::of_row(v, i)), changing);
         self.fill_walls(frame, changing);
-        self.hold_changing(frame, changing, outer);
-        self.fill_outside(frame, outer, changing);
+        self.hold_sides(frame, changing);
+        self.fill_outside(frame, changing);
         self.residual(frame, changing, out);
         work.changing = Some(storage);
-    }
-
-    fn changing(&self, frame: &Frame<D>) -> Changing<D> {
-        let outer = frame.outer.iter().map(|q| q.each_ref().map(Primitive::constant)).collect();
-        Changing { work: Work::new(self.discretisation.cloud.len()), outer }
     }
 }
 
@@ -80,16 +70,16 @@ mod tests {
     fn error(fluid: &Fluid<2>, at: &Instant<'_>, frozen: bool) -> f64 {
         let u = uneven(fluid);
         let v: Vec<f64> = u.iter().enumerate().map(|(k, u)| (1.7 * k as f64).sin() * (0.1 + u.abs())).collect();
-        let (mut frame, mut work) = (fluid.frame(at, &u), fluid.work());
+        let (frame, mut work) = (fluid.frame(at, &u), fluid.work());
         if frozen {
-            fluid.freeze_limiter(&mut frame, &u, &mut work);
+            fluid.freeze_limiter(&frame, &u, &mut work);
         }
         let mut exact = vec![0.0; u.len()];
-        fluid.derivative(&u, &v, (&mut work, &mut frame), &mut exact);
+        fluid.jvp(&frame, [&u, &v], &mut work, &mut exact);
         let mut beside = |step: f64| {
             let moved: Vec<f64> = u.iter().zip(&v).map(|(u, v)| u + step * v).collect();
             let mut du = vec![0.0; u.len()];
-            fluid.rhs_with_boundary(&moved, &mut work, &mut frame, &mut du);
+            fluid.rhs(&frame, &moved, &mut work, &mut du);
             du
         };
         let step = 1e-7;

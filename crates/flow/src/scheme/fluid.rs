@@ -8,6 +8,7 @@ use super::discretisation::CloudMotion;
 use super::frame::Discretisation;
 use super::reconstruct::{Factors, Gradient, Reconstruction};
 use super::viscous::ViscousModel;
+use super::wall_state::WallCondition;
 use crate::case::{Flux, Limiter};
 use crate::cloud::Cloud;
 use crate::math::Vector;
@@ -74,15 +75,9 @@ pub struct Work<const D: usize, S = f64> {
     /// What the limiter and the steepness stay, where they are frozen.
     pub frozen: Option<Arc<Frozen<D>>>,
     /// The same with the change along a direction, once derivatives have been asked for.
-    pub changing: Option<Box<Changing<D>>>,
-}
-
-/// Storage of a derivative.
-pub struct Changing<const D: usize> {
-    /// That of the evaluation.
-    pub work: Work<D, Dual>,
-    /// What sides hold, as in [`Frame::outer`](super::Frame::outer).
-    pub outer: Vec<[Primitive<D, Dual>; 3]>,
+    pub changing: Option<Box<Work<D, Dual>>>,
+    /// States that sides hold beside the flow at hand, as in [`Frame::held`](super::Frame::held).
+    pub held: Vec<[Primitive<D, S>; 3]>,
 }
 
 /// What a limiter does in one state.
@@ -103,6 +98,7 @@ impl<const D: usize, S: Scalar> Work<D, S> {
             steepness: vec![S::constant(0.0); n],
             frozen: None,
             changing: None,
+            held: Vec::new(),
         }
     }
 }
@@ -111,6 +107,12 @@ impl<const D: usize> Fluid<D> {
     /// The unknowns on a cloud: density, momentum and energy of every fluid particle; density measures a residual.
     pub fn unknowns(cloud: &Cloud<D>) -> [Unknowns; 1] {
         [Unknowns::new(Name::Gas, cloud.n_fluid, n_variables(D)).measured_by(1)]
+    }
+
+    /// Boundary condition at the body with this number.
+    #[inline]
+    pub fn wall_condition(&self, body: u16) -> WallCondition {
+        self.viscous_model.as_ref().map_or(WallCondition::Slip, |m| m.wall_condition(body))
     }
 
     /// The state at the start.

@@ -31,7 +31,7 @@ impl<const D: usize> System for Fluid<D> {
         &self.fields
     }
 
-    fn frame(&self, at: &Instant<'_>, u: &[f64]) -> Frame<D> {
+    fn frame(&self, at: &Instant<'_>, _: &[f64]) -> Frame<D> {
         let cloud = &self.discretisation.cloud;
         let mut frame = Frame {
             time: at.time,
@@ -42,10 +42,9 @@ impl<const D: usize> System for Fluid<D> {
             velocity: Arc::default(),
             walls: Arc::default(),
             lagrangian_step: LagrangianStep::default(),
-            outer: (0..cloud.outer.len()).map(|k| cloud.beside(k).map(|i| (self.held)(&cloud.x[i]))).collect(),
+            held: (0..cloud.outer.len()).map(|k| cloud.beside(k).map(|i| (self.held)(&cloud.x[i]))).collect(),
         };
         self.place(at, &mut frame);
-        self.update_boundary_state(u, &mut self.work(), &mut frame);
         frame
     }
 
@@ -54,6 +53,9 @@ impl<const D: usize> System for Fluid<D> {
         if matches!(at.rate, Rate::Still) {
             frame.velocity = Arc::default();
             frame.walls = Arc::default();
+        }
+        if !self.cloud_motion.is_still() {
+            self.hold_start(frame);
         }
     }
 
@@ -65,12 +67,6 @@ impl<const D: usize> System for Fluid<D> {
         }
     }
 
-    fn update_boundary_state(&self, u: &[f64], work: &mut Work<D>, frame: &mut Frame<D>) {
-        self.fill_fluid(frame, u, work);
-        self.fill_walls(frame, work);
-        self.hold_sides(frame, work);
-    }
-
     fn work(&self) -> Work<D> {
         Work::new(self.discretisation.cloud.len())
     }
@@ -80,15 +76,8 @@ impl<const D: usize> System for Fluid<D> {
         self.residual(frame, work, du);
     }
 
-    fn rhs_with_boundary(&self, u: &[f64], work: &mut Work<D>, frame: &mut Frame<D>, du: &mut [f64]) {
-        self.update_boundary_state(u, work, frame);
-        // fluid and walls, which do not depend on the sides, are known
-        self.fill_outside(frame, &frame.outer, work);
-        self.residual(frame, work, du);
-    }
-
-    fn derivative(&self, u: &[f64], v: &[f64], (work, frame): (&mut Work<D>, &mut Frame<D>), out: &mut [f64]) {
-        self.residual_change(frame, (u, v), work, out);
+    fn jvp(&self, frame: &Frame<D>, at: [&[f64]; 2], work: &mut Work<D>, out: &mut [f64]) {
+        self.residual_change(frame, at, work, out);
     }
 
     fn rates(&self, frame: &Frame<D>, u: &[f64], work: &mut Work<D>, rate: &mut [f64]) {

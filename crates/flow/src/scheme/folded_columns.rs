@@ -4,7 +4,6 @@
 //! velocity. An image follows its source.
 use super::fluid::{Fluid, Work};
 use super::frame::Frame;
-use super::viscous::WallCondition;
 use crate::math::Vector;
 use crate::math::block_matrix::Rows;
 
@@ -20,7 +19,7 @@ pub(super) fn couple<const D: usize>(
     let cloud = &frame.discretisation.cloud;
     if cloud.interface_range().contains(&column) {
         let wall = &cloud.interface[column - cloud.n_fluid];
-        let slips = fluid.viscous_model.as_ref().is_none_or(|f| f.wall_condition(wall.body) == WallCondition::Slip);
+        let slips = fluid.wall_condition(wall.body).slips();
         match slips {
             true => rows.add(row, row, |r, c| folded(&coupling, &wall.normal, r, c)),
             false => {

@@ -51,8 +51,8 @@ pub struct Frame<const D: usize> {
     pub jets: Vec<Jet>,
     /// What walls that another system decides on take; empty where the state of the gas alone says it.
     pub taken: Arc<Vec<Taken<D>>>,
-    /// States that sides hold, in the axes of the case: at each outer particle, at its source and behind that.
-    pub outer: Vec<[Primitive<D>; 3]>,
+    /// States that sides hold whatever the flow is, in the axes of the case: at each outer particle, at its source and behind that.
+    pub held: Vec<[Primitive<D>; 3]>,
 }
 
 /// What an interface particle takes in a step, where a structure beside the gas has decided on it.

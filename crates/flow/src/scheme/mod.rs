@@ -43,11 +43,12 @@ pub mod wall_state;
 
 pub use deforming_surface::DeformingSurface;
 pub use discretisation::CloudMotion;
-pub use fluid::{Fluid, Work};
+pub use fluid::{FarField, Fluid, Work};
 pub use frame::{Discretisation, Frame, Taken};
 pub use has_gas::{Exchange, HasGas};
 pub use reclouding::Reclouded;
 pub use transfer::RemapLedger;
 pub use travel::{ParticleKinematics, Travel};
 pub use view::View;
-pub use viscous::{ViscousModel, WallCondition};
+pub use viscous::ViscousModel;
+pub use wall_state::WallCondition;

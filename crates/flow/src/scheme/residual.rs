@@ -35,7 +35,6 @@ use crate::cloud::operators::WallFace;
 use crate::math::Vector;
 use crate::math::parallel::sweep_parts;
 use crate::physics::{Conserved, n_variables};
-use crate::system::System;
 
 impl<const D: usize> Fluid<D> {
     /// Fills `du` with R from the states in `work`.
@@ -59,9 +58,8 @@ impl<const D: usize> Fluid<D> {
     }
 
     /// Has the limiter leave of all slopes from now on what it leaves of them in the state `u`, and shocks be where they are there.
-    pub fn freeze_limiter(&self, frame: &mut Frame<D>, u: &[f64], work: &mut Work<D>) {
+    pub fn freeze_limiter(&self, frame: &Frame<D>, u: &[f64], work: &mut Work<D>) {
         work.frozen = None;
-        self.update_boundary_state(u, work, frame);
         self.fill_states(frame, u, work);
         if !self.reconstruction.second_order {
             return;

@@ -8,11 +8,10 @@ use super::fluid::{Fluid, Work};
 use super::frame::Frame;
 use super::lanes::Number;
 use super::reconstruct::Gradient;
-use super::viscous::WallCondition;
+use super::sides::OpenSide;
 use super::wall_fits::{lowest_two, parabola};
 use super::wall_motion::WallMotion;
 use super::wall_state::{Wall, no_slip_wall, slip_wall};
-use crate::case::Side;
 use crate::cloud::Edge;
 use crate::math::Vector;
 use crate::math::parallel::{sweep, sweep_each, sweep_parts};
@@ -24,7 +23,8 @@ impl<const D: usize> Fluid<D> {
     pub fn fill_states(&self, frame: &Frame<D>, u: &[f64], work: &mut Work<D>) {
         self.fill_fluid(frame, u, work);
         self.fill_walls(frame, work);
-        self.fill_outside(frame, &frame.outer, work);
+        self.hold_sides(frame, work);
+        self.fill_outside(frame, work);
     }
 
     /// Fills the states of the evolved particles.
@@ -62,13 +62,8 @@ impl<const D: usize> Fluid<D> {
     }
 
     /// Fills the states of outer particles and images from those of the fluid and the walls, and what sides hold.
-    pub(super) fn fill_outside<S: Number>(
-        &self,
-        frame: &Frame<D>,
-        held: &[[Primitive<D, S>; 3]],
-        work: &mut Work<D, S>,
-    ) {
-        let cloud = &frame.discretisation.cloud;
+    pub(super) fn fill_outside<S: Number>(&self, frame: &Frame<D>, work: &mut Work<D, S>) {
+        let (cloud, held) = (&frame.discretisation.cloud, &work.held);
         let (inside, rest) = work.state.split_at_mut(cloud.n_rows());
         let (fluid, walls) = inside.split_at(cloud.n_fluid);
         let (outer, ghosts) = rest.split_at_mut(cloud.outer.len());
@@ -103,12 +98,11 @@ impl<const D: usize> Fluid<D> {
             motion: frame.walls.get(w).map(WallMotion::constant),
         };
         let front = || fits.row(cloud, w).map(|(k, weight)| (S::constant(weight), q(k)));
-        let condition = self.viscous_model.as_ref().map_or(WallCondition::Slip, |m| m.wall_condition(interface.body));
-        let temperature = match condition {
-            WallCondition::Slip => return slip_wall(&self.gas, &wall, front()),
-            WallCondition::Adiabatic => None,
-            WallCondition::Temperature(t) => Some(S::constant(t)),
-        };
+        let condition = self.wall_condition(interface.body);
+        if condition.slips() {
+            return slip_wall(&self.gas, &wall, front());
+        }
+        let temperature = condition.temperature();
         let Some((particles, heights)) = lowest_two(cloud, w) else {
             return no_slip_wall(&self.gas, &wall, temperature, front());
         };
@@ -146,10 +140,10 @@ impl<const D: usize> Fluid<D> {
         cloud.first_order.iter().for_each(|i| rows[*i as usize] = Gradient::zero());
         let rows = &*rows;
         let (outer, ghosts) = rest.split_at_mut(cloud.outer.len());
-        // a held state that varies along the side also varies across it: without a slope the edge flux is of first order
-        sweep(outer, |k| match cloud.outer[k].side {
-            Side::Held => rows.get(cloud.outer[k].source as usize).copied().unwrap_or_else(Gradient::zero),
-            _ => Gradient::zero(),
+        sweep(outer, |k| {
+            let source =
+                rows.get(cloud.outer[k].source as usize).filter(|_| OpenSide::of(cloud.outer[k].side).varies());
+            source.copied().unwrap_or_else(Gradient::zero)
         });
         sweep(ghosts, |k| {
             let image = &cloud.ghosts[k];

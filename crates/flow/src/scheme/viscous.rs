@@ -20,6 +20,7 @@
 //! The linearisation contains the differences across the face only (thin-layer approximation).
 use super::block::Block;
 use super::reconstruct::Gradient;
+use super::wall_state::WallCondition;
 use crate::math::Vector;
 use crate::math::blocks::array;
 use crate::math::jet::Scalar;
@@ -29,17 +30,6 @@ use crate::physics::{Gas, Newtonian, Primitive, n_variables};
 /// Smallest fraction of the length of an edge that counts as its extent across the face. It keeps the correction
 /// bounded and damping where a face is nearly parallel to its edge.
 const SHORTEST: f64 = 0.3;
-
-/// Condition of the gas at the surface of a body.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum WallCondition {
-    /// Slip.
-    Slip,
-    /// No slip, adiabatic.
-    Adiabatic,
-    /// No slip, with this wall temperature divided by that of the free stream.
-    Temperature(f64),
-}
 
 /// Viscosity of the gas and the conditions at its walls.
 #[derive(Clone, Debug, PartialEq)]
@@ -60,11 +50,11 @@ impl ViscousModel {
 
 /// Stress and heat flux at a wall.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct WallSlopes<const D: usize> {
+pub struct WallSlopes<const D: usize, S = f64> {
     /// Viscous stress of the gas on the wall, force per area.
-    pub stress: Vector<D>,
+    pub stress: Vector<D, S>,
     /// Heat flux from the gas into the wall, per area and time.
-    pub heat: f64,
+    pub heat: S,
 }
 
 /// Weights of the slope at the wall of a parabola that is zero there and has given values at two heights.
@@ -158,7 +148,7 @@ pub(super) fn at_contact<const D: usize>(
     let mut block = [[0.0; 5]; 5];
     motion(q, n, &mut block);
     let heat = energy(q, gas);
-    let conducts = if wall_condition == WallCondition::Adiabatic { 0.0 } else { gas.gamma / medium.prandtl };
+    let conducts = wall_condition.heat(gas.gamma / medium.prandtl);
     for c in 0..n_variables(D) {
         let work: f64 = (0..D).map(|d| wall[d] * block[1 + d][c]).sum();
         block[D + 1][c] = work + conducts * heat[c];

@@ -10,8 +10,7 @@ use super::fluid::{Fluid, Work};
 use super::frame::Frame;
 use super::lanes::Number;
 use super::viscous::{
-    ViscousModel, WallCondition, WallSlopes, at_contact, direction, reach, slope_weights, slopes, temperature_gradient,
-    thin_layer,
+    ViscousModel, WallSlopes, at_contact, direction, reach, slope_weights, slopes, temperature_gradient, thin_layer,
 };
 use super::wall_fits::lowest_two;
 use super::wall_motion::WallMotion;
@@ -82,7 +81,7 @@ impl<const D: usize> Fluid<D> {
         motion: Option<&WallMotion<D>>,
     ) -> Option<Slopes<D, S>> {
         let wall_condition = viscous_model.wall_condition(cloud.interface[w].body);
-        if wall_condition == WallCondition::Slip {
+        if wall_condition.slips() {
             return None;
         }
         let (i, normal) = (cloud.n_fluid + w, &cloud.interface[w].normal);
@@ -102,7 +101,7 @@ impl<const D: usize> Fluid<D> {
                 (rate, temperature_gradient(&self.gas, wall, g).along(normal))
             }
         };
-        let heating = if wall_condition == WallCondition::Adiabatic { S::constant(0.0) } else { heating };
+        let heating = wall_condition.heat(heating);
         let normal_of = |s: S| Vector::constant(normal) * s;
         Some(Slopes {
             velocity: wall.velocity,
@@ -119,16 +118,16 @@ impl<const D: usize> Fluid<D> {
 
     /// Stress and heat flux on the wall of interface particle `w`, which moves with `motion`, from the states and
     /// gradients in `work`; `None` at slip walls.
-    pub(super) fn wall_slopes(
+    pub(super) fn wall_slopes<S: Number>(
         &self,
-        (cloud, work): (&Cloud<D>, &Work<D>),
+        (cloud, work): (&Cloud<D>, &Work<D, S>),
         w: usize,
         motion: Option<&WallMotion<D>>,
-    ) -> Option<WallSlopes<D>> {
+    ) -> Option<WallSlopes<D, S>> {
         let viscous_model = self.viscous_model.as_ref()?;
         let at = self.at_wall(viscous_model, (cloud, work), w, motion)?;
-        let still = Slopes { velocity: Vector::ZERO, ..at };
-        let through = viscous_model.medium.flux(&self.gas, &still, &cloud.interface[w].normal);
+        let still = Slopes { velocity: Vector::zero(), ..at };
+        let through = viscous_model.medium.flux(&self.gas, &still, &Vector::constant(&cloud.interface[w].normal));
         Some(WallSlopes { stress: through.momentum, heat: through.energy })
     }
 
@@ -217,7 +216,7 @@ impl<const D: usize> Fluid<D> {
         for face in faces {
             let source = cloud.source(face.wall as usize).index;
             let wall_condition = viscous_model.wall_condition(cloud.interface[source - cloud.n_fluid].body);
-            if wall_condition == WallCondition::Slip {
+            if wall_condition.slips() {
                 continue;
             }
             let n = face.area.unit();

@@ -11,6 +11,7 @@
 //! *No-slip walls* impose their velocity, and their temperature or ∂θ/∂n = 0; ∂p/∂n = −ρ n·a_w.
 //!
 //! Both are functions of plain values: the wall, and the weights W_k and states of the particles in front of it.
+//! [`WallCondition`] is the boundary condition of a body: all that depends on which of them it is stands here.
 use super::wall_motion::WallMotion;
 use crate::math::Vector;
 use crate::math::jet::Scalar;
@@ -28,6 +29,38 @@ const OF_SPEED: f64 = 2.0;
 const OF_PRESSURE: f64 = 2.9;
 /// Greatest fraction of its pressure by which the acceleration of a wall may change the pressure on it.
 const MAX_INERTIA: f64 = 0.5;
+
+/// Boundary condition of the gas at the surface of a body.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum WallCondition {
+    /// Slip.
+    Slip,
+    /// No slip, adiabatic.
+    Adiabatic,
+    /// No slip, with this wall temperature divided by that of the free stream.
+    Temperature(f64),
+}
+
+impl WallCondition {
+    /// True where the gas slides along the wall: no stress and no heat.
+    #[inline]
+    pub fn slips(self) -> bool {
+        self == Self::Slip
+    }
+
+    /// The temperature that the wall has; `None` where it follows from the gas.
+    pub fn temperature<S: Scalar>(self) -> Option<S> {
+        match self {
+            Self::Temperature(t) => Some(S::constant(t)),
+            Self::Slip | Self::Adiabatic => None,
+        }
+    }
+
+    /// What of `heat`, a quantity in proportion to the heat flux that the slope of the temperature would give, passes the wall.
+    pub fn heat<S: Scalar>(self, heat: S) -> S {
+        if self == Self::Adiabatic { S::constant(0.0) } else { heat }
+    }
+}
 
 /// Geometry and motion of the wall at an interface particle.
 #[derive(Clone, Copy, Debug)]

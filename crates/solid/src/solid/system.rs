@@ -82,8 +82,6 @@ impl<const D: usize> System for Structure<D> {
         *frame = at.time;
     }
 
-    fn update_boundary_state(&self, _: &[f64], _: &mut Work<D>, _: &mut f64) {}
-
     fn rhs(&self, frame: &f64, u: &[f64], work: &mut Work<D>, du: &mut [f64]) {
         let state = self.state(*frame, u);
         let n = self.displacements();

@@ -35,8 +35,7 @@ pub(super) fn translations<const D: usize>(
     surface: &Surface<D>,
     (bodies, n): (&[Attached<D>], usize),
 ) -> Vec<Translation> {
-    let sides = &case.boundary;
-    let pairs = [[sides.x_min, sides.x_max], [sides.y_min, sides.y_max], [sides.z_min, sides.z_max]];
+    let pairs = case.boundary.pairs();
     let others = |side: &Side| matches!(side, Side::Held | Side::Outflow { .. });
     if pairs.iter().flatten().any(others) {
         return Vec::new();

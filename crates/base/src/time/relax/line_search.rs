@@ -58,9 +58,9 @@ impl<S: Implicit> Relax<'_, S> {
         if self.system.check(&self.frame, &self.trial).is_err() {
             return false;
         }
-        let mut beside = self.frame_of_trial();
-        let frame = beside.as_mut().unwrap_or(&mut self.frame);
-        self.system.rhs_with_boundary(&self.trial, &mut self.work, frame, &mut self.trial_residual);
+        let beside = self.frame_of_trial();
+        let frame = beside.as_ref().unwrap_or(&self.frame);
+        self.system.rhs(frame, &self.trial, &mut self.work, &mut self.trial_residual);
         self.evaluations += 1;
         if let Some(term) = &self.time {
             let (trial, rate) = (&self.trial, term.rate());
@@ -69,10 +69,7 @@ impl<S: Implicit> Relax<'_, S> {
         }
         let norm = self.norm_of(&self.trial_residual);
         if !norm.is_finite() || norm > jump * self.norm {
-            match beside {
-                Some(_) => self.beside = beside,
-                None => self.system.update_boundary_state(&self.u, &mut self.work, &mut self.frame),
-            }
+            self.beside = beside.or(self.beside.take());
             return false;
         }
         if let Some(frame) = beside {

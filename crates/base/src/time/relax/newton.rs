@@ -95,13 +95,10 @@ impl<S: Implicit> Relax<'_, S> {
             let eps = 1e-7 * (1.0 + size) / length;
             let inverse = 1.0 / eps;
             sweep(trial, |k| u[k] + eps * v[k]);
-            match beside.as_mut() {
-                Some(beside) => {
-                    put(system, time, trial, beside);
-                    system.rhs_with_boundary(trial, work, beside, out);
-                }
-                None => system.rhs(frame, trial, work, out),
+            if let Some(beside) = beside.as_mut() {
+                put(system, time, trial, beside);
             }
+            system.rhs(beside.as_ref().unwrap_or(frame), trial, work, out);
             // the residual holds the time term at u, which is the same in both; its change is in the shift
             let base = |k: usize| residual[k] + time.map_or(0.0, |t| t.rate() * u[k] + t.rest[k]);
             sweep_fields(system, out, |i, at, out| {
