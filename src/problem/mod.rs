@@ -27,13 +27,9 @@ pub(crate) use assemble::{coupled, gas, in_stream};
 pub use error::{Blame, RunError};
 pub use in_dimension::ProblemIn;
 pub(crate) use motion_feasibility::check as check_motion;
-#[cfg(test)]
-pub(crate) use open::motions;
 pub(crate) use open::surface;
 pub use remark::Remark;
 pub(crate) use sanity::rough;
-#[cfg(test)]
-pub(crate) use sanity::sane;
 pub(crate) use size::{bytes_each, spec};
 pub(crate) use small_motion::March;
 pub use stream::StreamRatio;

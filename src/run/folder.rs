@@ -385,22 +385,4 @@ mod tests {
         fs::write(out.join("checkpoint.alula.previous"), "x").unwrap();
         assert!(!is_barely_begun(&out) && check_begun(&out).is_ok());
     }
-
-    #[test]
-    fn references_without_their_columns_are_refused() {
-        let folder = tempfile::tempdir().unwrap();
-        let told = |table: &str, shape: &str| {
-            fs::write(folder.path().join("cp.csv"), table).unwrap();
-            let text = format!("[flow]\nmach = 0.3\n[[body]]\n{shape}\n[[compare]]\nfile = \"cp.csv\"\n");
-            let case = read(&text, "t").unwrap();
-            let seen = check_compared(&case, folder.path());
-            crate::run::refusals::as_checked(&case, folder.path(), seen).map_err(|e| e.to_string())
-        };
-        let (section, sphere) = ("naca = \"0012\"", "sphere = { radius = 1 }");
-        let wrong = told("x,cp\n0,1\n", section).unwrap_err();
-        assert!(wrong.contains("`cp.csv` has no column `x_c`, but `x`, `cp`"), "{wrong}");
-        assert!(told("x_c,Cp\n0,high\n", section).unwrap_err().contains("no number in its column `Cp`"));
-        assert!(told("x_c,Cp\n0,1\n", sphere).unwrap_err().contains("no column `eta`"));
-        assert!(told("x_c;Cp\n0;1\n", section).is_ok() && told("eta,x_c,Cp\n0.5,0,1\n", sphere).is_ok());
-    }
 }

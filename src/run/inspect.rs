@@ -13,6 +13,7 @@ use super::understood::{Aeroelastic, Understood};
 use crate::case::{Case, GafMethod};
 use crate::cloud::layout::{capped, count};
 use crate::cloud::{Cloud, CloudSpec, Diagnosis};
+use crate::geometry::Surface;
 use crate::math::reduce::maximum;
 use crate::observe::table::write_json;
 use crate::observe::vtk::{Column, write_cells};
@@ -140,13 +141,7 @@ fn look<const D: usize>(
 ) -> Result<CloudReport, RunError> {
     let (case, surface, input) = (problem.case(), problem.surface(), problem.input());
     folder::check_compared(case, input)?;
-    let (mut notes, mut warnings) = (Vec::new(), Vec::new());
-    for remark in problem.remarks().iter().cloned().chain(problem.remarks_on_gaf_modes()?) {
-        match remark {
-            Remark::Note(text) => notes.push(text),
-            Remark::Warning(text) => warnings.push(text),
-        }
-    }
+    let (mut notes, mut warnings) = remarks(problem)?;
     let alone = &problem.without_structures();
     let motions = alone.motions();
     let seen = if out.is_none() { sample_cloud(alone) } else { SampleCloud::PLAIN };
@@ -155,36 +150,27 @@ fn look<const D: usize>(
     let (fluid, u) = (&solver.system, &solver.system.start());
     let mut work = fluid.work();
     let frame = fluid.frame(&Instant::still(0.0), u);
-    let evaluation = seconds_of_evaluation(fluid, &frame, u, &mut work);
-    let fastest = || {
-        let mut rate = vec![0.0; fluid.discretisation.cloud.n_fluid];
-        fluid.rates(&frame, u, &mut fluid.work(), &mut rate);
-        maximum(rate.len(), |i| rate[i])
-    };
+    let evaluation = seen.more * seconds_of_evaluation(fluid, &frame, u, &mut work);
+    let fastest = || fastest_rate(fluid, &frame, u);
     let cloud = &fluid.discretisation.cloud;
     let n_fluid = (cloud.n_fluid as f64 * seen.more).round() as usize;
     let n_wall = (cloud.interface.len() as f64 * seen.factor.powi(D as i32 - 1)).round() as usize;
     let particles = n_fluid + n_wall + cloud.outer.len();
-    let told = if seen.factor == 1.0 { [cloud.notes.clone(), cloud.early_ends()].concat() } else { seen.told(alone) };
-    notes.extend(told.into_iter().chain(accuracy::too_few(case, particles)));
+    notes.extend(seen.told(alone, cloud).into_iter().chain(accuracy::too_few(case, particles)));
     warnings.extend(check_motion(case, cloud, motions)?);
     let structure = solids::inspect_in_gas(case, input)?;
     notes.extend(told_of_own_modes(case));
     warnings.extend(structure.iter().flat_map(|s| s.warnings.iter().cloned()));
     numerics::marching(case, motions.period(), D)?;
     let axes = (!cloud.interface.is_empty()).then(|| load_axes(case, surface).axes(&fluid.view(&frame, u, &mut work)));
-    let aeroelastic = Aeroelastic::of(problem);
     let period = motions.period();
     let pilot = pilot::fly(case, input, surface, n_fluid, period);
-    let evaluation = evaluation * seen.more;
     let pixels = pixels(surface, &cloud.tree.bounds());
     let sizes = &spacing::sizes(case, surface, particles);
-    let family = spacing::asked(case).map(|asked| accuracy::family(case, &asked, sizes, D)).unwrap_or_default();
-    let finest = family.last().map(|stage| spacing::of_stage(case, stage.factor));
-    warnings.extend(finest.iter().flat_map(|on| rough(on, surface)));
+    warnings.extend(rough_on_the_finest(case, surface, sizes));
     let sized = Sized { case, particles, sizes, dimension: D, period, pixels, evaluation, pilot };
     let report = CloudReport {
-        understood: Understood::of(case, surface, motions, axes.as_ref(), aeroelastic),
+        understood: Understood::of(case, surface, motions, axes.as_ref(), Aeroelastic::of(problem)),
         particles,
         fluid: n_fluid,
         interface: n_wall,
@@ -209,6 +195,18 @@ fn look<const D: usize>(
     Ok(report)
 }
 
+/// Notes and warnings of opening a problem.
+fn remarks<const D: usize>(problem: &ProblemIn<D>) -> Result<(Vec<String>, Vec<String>), RunError> {
+    let (mut notes, mut warnings) = (Vec::new(), Vec::new());
+    for remark in problem.remarks().iter().cloned().chain(problem.remarks_on_gaf_modes()?) {
+        match remark {
+            Remark::Note(text) => notes.push(text),
+            Remark::Warning(text) => warnings.push(text),
+        }
+    }
+    Ok((notes, warnings))
+}
+
 /// The cloud that is looked at.
 #[derive(Clone, Copy)]
 struct SampleCloud {
@@ -221,8 +219,11 @@ struct SampleCloud {
 impl SampleCloud {
     const PLAIN: Self = Self { factor: 1.0, more: 1.0 };
 
-    /// What is told of the cloud of the case where another one is looked at.
-    fn told<const D: usize>(&self, problem: &ProblemIn<D>) -> Vec<String> {
+    /// What is told of the cloud of the case: what `cloud` says where it is that one, else what is known without it.
+    fn told<const D: usize>(&self, problem: &ProblemIn<D>, cloud: &Cloud<D>) -> Vec<String> {
+        if self.factor == 1.0 {
+            return [cloud.notes.clone(), cloud.early_ends()].concat();
+        }
         problem.surface().and_then(|surface| capped(&CloudSpec::of_case(problem.case()), surface)).into_iter().collect()
     }
 }
@@ -262,6 +263,24 @@ fn seconds_of_evaluation<const D: usize>(
         timer.elapsed().as_secs_f64()
     };
     (0..TIMED).map(one).fold(f64::INFINITY, f64::min)
+}
+
+/// Bodies whose loads even the finest cloud of a family leaves a rough guess.
+fn rough_on_the_finest<const D: usize>(
+    case: &Case,
+    surface: Option<&Surface<D>>,
+    sizes: &dyn Fn(f64) -> f64,
+) -> Vec<String> {
+    let family = spacing::asked(case).map(|asked| accuracy::family(case, &asked, sizes, D)).unwrap_or_default();
+    let finest = family.last().map(|stage| spacing::of_stage(case, stage.factor));
+    finest.iter().flat_map(|on| rough(on, surface)).collect()
+}
+
+/// Greatest rate at which signals pass a particle, one over the longest stable step of a march.
+fn fastest_rate<const D: usize>(fluid: &Fluid<D>, frame: &Frame<D>, u: &[f64]) -> f64 {
+    let mut rate = vec![0.0; fluid.discretisation.cloud.n_fluid];
+    fluid.rates(frame, u, &mut fluid.work(), &mut rate);
+    maximum(rate.len(), |i| rate[i])
 }
 
 /// What the matrices of `[gaf]` take, where the case asks for them: a steady flow and linear systems about it, or two balances for each
@@ -324,7 +343,7 @@ fn write<const D: usize>(
     to: &Target<'_>,
     solver: &Solver<crate::scheme::Fluid<D>, D>,
     work: &mut crate::scheme::Work<D>,
-    surface: Option<&crate::geometry::Surface<D>>,
+    surface: Option<&Surface<D>>,
 ) -> Result<(), RunError> {
     let fluid = &solver.system;
     let frame = fluid.frame(&Instant::still(0.0), &solver.system.start());

@@ -31,8 +31,6 @@ mod room;
 mod session;
 mod shape;
 mod solids;
-#[cfg(test)]
-mod tests;
 mod understood;
 pub mod verify;
 

@@ -96,31 +96,3 @@ fn measures<const D: usize>(case: &Case, surface: &Surface<D>) -> Measures {
         extents: [bounds.min.to_3d(), bounds.max.to_3d()],
     }
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::case::read;
-
-    fn of(body: &str) -> BodyTable {
-        let text = format!("[flow]\nmach = 0.3\n[[body]]\n{body}\n");
-        body_table(&read(&text, "t").unwrap(), Path::new("")).unwrap()
-    }
-
-    #[test]
-    fn bodies_are_measured_and_their_elements_close() {
-        let square = of("box = { size = [2, 1] }");
-        let m = square.measures;
-        assert!((m.area - 6.0).abs() < 1e-12 && (m.volume - 2.0).abs() < 1e-12 && m.closed && m.span.is_none());
-        assert_eq!((m.chord, m.extents), (2.0, [[-1.0, -0.5, 0.0], [1.0, 0.5, 0.0]]));
-        assert_eq!(square.elements.len(), 2 * square.body.len());
-        let cuboid = of("name = \"block\"\nbox = { size = [2, 1, 3] }");
-        let m = cuboid.measures;
-        assert!((m.area - 22.0).abs() < 1e-12 && (m.volume - 6.0).abs() < 1e-12 && m.closed);
-        assert_eq!((m.span, &cuboid.bodies[0][..]), (Some(1.0), "block"));
-        for table in [&square, &cuboid] {
-            let sum = table.area_vectors.iter().fold([0.0; 3], |s, a| std::array::from_fn(|k| s[k] + a[k]));
-            assert!(sum.iter().all(|s| s.abs() < 1e-12), "{sum:?}");
-        }
-    }
-}

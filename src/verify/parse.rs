@@ -1,7 +1,8 @@
 //! The tables of a `claim.toml`, key by key: every problem is noted with a hint.
 use toml::{Table, Value};
 
-use super::claim::{Claim, ClaimError, ClaimFile, Exact, Kind, Metric, Study};
+use super::claim::{Claim, ClaimError, ClaimFile, Exact, Kind, Study};
+use super::metric::Metric;
 
 /// Most runs of an ensemble.
 const MOST_RUNS: f64 = 64.0;

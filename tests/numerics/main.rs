@@ -5,6 +5,7 @@
 mod common;
 
 mod accuracy;
+mod claims;
 mod convergence;
 mod coupled;
 mod examples;
@@ -22,9 +23,12 @@ mod motion;
 mod operators;
 mod polar;
 mod properties;
+mod refusals;
 mod solids;
 mod steps;
 mod structure;
+mod structures_alone;
+mod tables;
 mod travel;
 mod units;
 mod verification;

@@ -47,17 +47,7 @@ pub(crate) fn build<const D: usize>(case: &Case, input: &Path) -> Result<Built<D
     let (mut notes, mut warnings) = (Vec::new(), Vec::new());
     let parts = parts::<D>(case, input, &mut notes, &mut warnings)?;
     let owner: Vec<u16> = parts.iter().zip(0..).flat_map(|(p, k)| std::iter::repeat_n(k, p.fill.x.len())).collect();
-    let particles = Particles::new(parts.iter().map(|p| p.fill.clone()).collect()).map_err(|e| RunError::Solid {
-        what: e.to_string(),
-        hint: "take a smaller `spacing`: where a body is thin, and at its sharp edges, it decides".into(),
-    })?;
-    notes.push(format!(
-        "{} solid particles with {:.1} neighbours each; the divergence theorem changed gradients by {:.1} % in {} iterations",
-        particles.len(),
-        particles.mean_neighbours(),
-        100.0 * particles.correction,
-        particles.iterations
-    ));
+    let particles = particles_of(&parts, &mut notes)?;
     let (mut materials, of) = materials(&parts, &particles, &owner)?;
     if lasts(case) {
         materials.iter_mut().for_each(|m| *m = m.as_elastic());
@@ -132,6 +122,22 @@ fn parts<'a, const D: usize>(
     let wanted = plans.iter().map(|p| Wanted { name: &p.name, spacing: p.spacing, size: p.size() });
     fit(&wanted.collect::<Vec<_>>(), D)?;
     plans.into_iter().map(|plan| plan.filled(warnings)).collect()
+}
+
+/// The particles of all bodies together, with their neighbours and weights.
+fn particles_of<const D: usize>(parts: &[Part<'_, D>], notes: &mut Vec<String>) -> Result<Particles<D>, RunError> {
+    let particles = Particles::new(parts.iter().map(|p| p.fill.clone()).collect()).map_err(|e| RunError::Solid {
+        what: e.to_string(),
+        hint: "take a smaller `spacing`: where a body is thin, and at its sharp edges, it decides".into(),
+    })?;
+    notes.push(format!(
+        "{} solid particles with {:.1} neighbours each; the divergence theorem changed gradients by {:.1} % in {} iterations",
+        particles.len(),
+        particles.mean_neighbours(),
+        100.0 * particles.correction,
+        particles.iterations
+    ));
+    Ok(particles)
 }
 
 /// Area of each particle that gas may touch.

@@ -68,8 +68,30 @@ pub(super) type Value = Result<f64, String>;
 impl Measured {
     /// The metric of `claim`, that needs one run only (and `others` where the claim names other cases).
     pub(super) fn value(&self, claim: &Claim, folder: &Path, others: &[&Self]) -> Value {
-        let (s, other) = (&self.numbers, others.first().copied());
-        match claim.metric {
+        let metric = claim.metric;
+        let found = self
+            .of_the_end(metric)
+            .or_else(|| self.of_periods(metric))
+            .or_else(|| self.of_thin_sections(metric, others))
+            .or_else(|| self.beside_others(claim, folder, others.first().copied()))
+            .or_else(|| self.of_fields(claim, folder));
+        found.unwrap_or_else(|| match metric {
+            Metric::ModeOmega
+            | Metric::ProbeDisplacement
+            | Metric::ProbeAmplitude
+            | Metric::ProbePhase
+            | Metric::LedgerOpen => Err("the case has a gas: this is measured of structures alone".into()),
+            _ if metric.is_of_flutter() => Err("this is measured of a flutter boundary, not of a run".into()),
+            _ if metric.is_of_forces() => Err("this is measured of `[gaf]`, not of a run".into()),
+            _ if metric.needs_cases() => Err("the metric needs a table of cases".into()),
+            _ => self.of_structure(claim, others),
+        })
+    }
+
+    /// Metrics of the summary: loads and convergence at the end of the run.
+    fn of_the_end(&self, metric: Metric) -> Option<Value> {
+        let s = &self.numbers;
+        Some(match metric {
             Metric::Cl | Metric::ExtrapolatedCl => Ok(s.loads.cl),
             Metric::Cd | Metric::ExtrapolatedCd => Ok(s.loads.cd),
             Metric::Cm => Ok(s.loads.cm),
@@ -78,62 +100,10 @@ impl Measured {
             Metric::SeparationUpper => {
                 s.separation_upper.ok_or_else(|| "friction turns nowhere on the upper side".into())
             }
-            Metric::CfBlasiusRms => {
-                metrics::root_mean_square(&self.blasius_differences(claim)?, None).ok_or_else(no_wall)
-            }
-            Metric::CfBlasiusMax => {
-                let differences = self.blasius_differences(claim)?;
-                metrics::max_difference(&differences, &vec![0.0; differences.len()]).ok_or_else(no_wall)
-            }
-            Metric::ProfileBlasiusRms => self.blasius_profile(claim),
             Metric::ClMomentum => s.loads_momentum_balance.map(|c| c.cl).ok_or_else(no_balance),
             Metric::CdMomentum => s.loads_momentum_balance.map(|c| c.cd).ok_or_else(no_balance),
             Metric::CdBalance => s.loads_momentum_balance.map(|c| (c.cd - s.loads.cd).abs()).ok_or_else(no_balance),
-            Metric::LiftAmplitude => self.lift().map(|c| c.norm()),
-            Metric::LiftPhase => self.lift().map(|c| c.arg().to_degrees()),
-            Metric::DragAmplitude => self.drag().map(|c| c.norm()),
-            Metric::DragPhase => self.drag().map(|c| c.arg().to_degrees()),
-            Metric::LiftLoopDifference => self.loop_difference(claim, folder, other, ("CL", |l| &l.cl)),
-            Metric::DragLoopDifference => self.loop_difference(claim, folder, other, ("CD", |l| &l.cd)),
-            Metric::LiftHarmonicError => {
-                let other = other.ok_or_else(no_other)?.lift()?;
-                Ok((self.lift()? - other).norm() / other.norm())
-            }
-            Metric::LiftMeanError => mean_error(&self.loops.cl, &other.ok_or_else(no_other)?.loops.cl),
-            Metric::Strouhal => self.cycles().map(|c| c.frequency * self.chord() / self.case.flow.reference().speed),
-            Metric::CycleSpread => self.cycles().map(|c| c.spread),
-            Metric::MeanCd => self.cycles().map(|c| c.mean_cd),
-            Metric::SwingCd => self.cycles().map(|c| c.amplitude_cd),
-            Metric::SwingCl => self.cycles().map(|c| c.amplitude_cl),
-            Metric::MeanCl => self.last_period().map(|p| p.mean_cl),
-            Metric::PeakCl => self.last_period().map(|p| p.peak_cl),
-            Metric::WakeLength => self.wake_length(),
-            Metric::PitotPressure => self.pitot_pressure(),
-            Metric::StandOff => self.stand_off(),
-            Metric::DragSecondHarmonic => Ok(harmonic(&self.loops.cd, 2).norm()),
-            Metric::ThinLiftAmplitude => self.thin(others, Self::lift).map(|c| c.norm()),
-            Metric::ThinLiftPhase => self.thin(others, Self::lift).map(|c| c.arg().to_degrees()),
-            Metric::ThinMomentAmplitude => self.thin(others, Self::moment).map(|c| c.norm()),
-            Metric::ThinMomentPhase => self.thin(others, Self::moment).map(|c| c.arg().to_degrees()),
-            Metric::ThinForceAmplitude => self.thin(others, Self::force).map(|c| c.norm()),
-            Metric::ThinForcePhase => self.thin(others, Self::force).map(|c| c.arg().to_degrees()),
             Metric::ResidualDrop => s.residual_drop.ok_or_else(|| "a march has a residual in each step".into()),
-            Metric::ModeOmega
-            | Metric::ProbeDisplacement
-            | Metric::ProbeAmplitude
-            | Metric::ProbePhase
-            | Metric::LedgerOpen => Err("the case has a gas: this is measured of structures alone".into()),
-            Metric::FlutterIndex
-            | Metric::FlutterSpeed
-            | Metric::FlutterFrequency
-            | Metric::FlutterError
-            | Metric::FlutterDifference
-            | Metric::LimitCycleIndex
-            | Metric::LimitCycleError
-            | Metric::LimitCycleMarch => Err("this is measured of a flutter boundary, not of a run".into()),
-            Metric::ForceAmplitudeError | Metric::ForcePhaseError => {
-                Err("this is measured of `[gaf]`, not of a run".into())
-            }
             Metric::Converged => Ok(f64::from(u8::from(s.succeeded))),
             Metric::Particles => Ok(s.particles as f64),
             Metric::MassDrift => s.drift.map(|[mass, _]| mass.abs()).ok_or_else(no_ledger),
@@ -141,37 +111,81 @@ impl Measured {
             Metric::ErrorL2Density | Metric::Order => {
                 s.error_l2_density.ok_or_else(|| "the case starts from no exact solution".into())
             }
-            Metric::CpRms | Metric::CpRmsOrder => {
-                metrics::root_mean_square(&self.cp_differences(claim, folder, other)?, None).ok_or_else(no_wall)
+            _ => return None,
+        })
+    }
+
+    /// Metrics of loads that repeat: harmonics of a motion, cycles of the flow itself.
+    fn of_periods(&self, metric: Metric) -> Option<Value> {
+        Some(match metric {
+            Metric::LiftAmplitude => self.lift().map(|c| c.norm()),
+            Metric::LiftPhase => self.lift().map(|c| c.arg().to_degrees()),
+            Metric::DragAmplitude => self.drag().map(|c| c.norm()),
+            Metric::DragPhase => self.drag().map(|c| c.arg().to_degrees()),
+            Metric::DragSecondHarmonic => Ok(harmonic(&self.loops.cd, 2).norm()),
+            Metric::Strouhal => self.cycles().map(|c| c.frequency * self.chord() / self.case.flow.reference().speed),
+            Metric::CycleSpread => self.cycles().map(|c| c.spread),
+            Metric::MeanCd => self.cycles().map(|c| c.mean_cd),
+            Metric::SwingCd => self.cycles().map(|c| c.amplitude_cd),
+            Metric::SwingCl => self.cycles().map(|c| c.amplitude_cl),
+            Metric::MeanCl => self.last_period().map(|p| p.mean_cl),
+            Metric::PeakCl => self.last_period().map(|p| p.peak_cl),
+            _ => return None,
+        })
+    }
+
+    /// Metrics extrapolated to a section of no thickness.
+    fn of_thin_sections(&self, metric: Metric, others: &[&Self]) -> Option<Value> {
+        Some(match metric {
+            Metric::ThinLiftAmplitude => self.thin(others, Self::lift).map(|c| c.norm()),
+            Metric::ThinLiftPhase => self.thin(others, Self::lift).map(|c| c.arg().to_degrees()),
+            Metric::ThinMomentAmplitude => self.thin(others, Self::moment).map(|c| c.norm()),
+            Metric::ThinMomentPhase => self.thin(others, Self::moment).map(|c| c.arg().to_degrees()),
+            Metric::ThinForceAmplitude => self.thin(others, Self::force).map(|c| c.norm()),
+            Metric::ThinForcePhase => self.thin(others, Self::force).map(|c| c.arg().to_degrees()),
+            _ => return None,
+        })
+    }
+
+    /// Metrics that compare with a file, an exact solution or the case `other`.
+    fn beside_others(&self, claim: &Claim, folder: &Path, other: Option<&Self>) -> Option<Value> {
+        Some(match claim.metric {
+            Metric::LiftLoopDifference => self.loop_difference(claim, folder, other, ("CL", |l| &l.cl)),
+            Metric::DragLoopDifference => self.loop_difference(claim, folder, other, ("CD", |l| &l.cd)),
+            Metric::LiftHarmonicError => other.ok_or_else(no_other).and_then(|other| self.lift_error(other)),
+            Metric::LiftMeanError => {
+                other.ok_or_else(no_other).and_then(|other| mean_error(&self.loops.cl, &other.loops.cl))
             }
-            Metric::SectionCpRms => {
-                metrics::root_mean_square(&self.section_differences(claim, folder)?, None).ok_or_else(no_wall)
-            }
-            Metric::CpMaxDifference => {
-                let differences = self.cp_differences(claim, folder, other)?;
-                metrics::max_difference(&differences, &vec![0.0; differences.len()]).ok_or_else(no_wall)
-            }
+            Metric::CpRms | Metric::CpRmsOrder => self.cp_differences(claim, folder, other).and_then(|d| mean_of(&d)),
+            Metric::CpMaxDifference => self.cp_differences(claim, folder, other).and_then(|d| largest_of(&d)),
+            _ => return None,
+        })
+    }
+
+    /// Metrics of the gas and of the walls of this run alone, and of tables of its sections.
+    fn of_fields(&self, claim: &Claim, folder: &Path) -> Option<Value> {
+        Some(match claim.metric {
+            Metric::CfBlasiusRms => self.blasius_differences(claim).and_then(|d| mean_of(&d)),
+            Metric::CfBlasiusMax => self.blasius_differences(claim).and_then(|d| largest_of(&d)),
+            Metric::ProfileBlasiusRms => self.blasius_profile(claim),
+            Metric::SectionCpRms => self.section_differences(claim, folder).and_then(|d| mean_of(&d)),
+            Metric::WakeLength => self.wake_length(),
+            Metric::PitotPressure => self.pitot_pressure(),
+            Metric::StandOff => self.stand_off(),
             Metric::ShockUpper => self.shock(claim, true),
             Metric::ShockLower => self.shock(claim, false),
             Metric::PanelPressure => self.panel_pressure(claim),
             Metric::FreeStreamDeviation => self.free_stream_deviation(),
             Metric::ShockPositionError => self.shock_position_error(),
             Metric::WaveAngle => self.wave_angle(claim),
-            Metric::BarsHolding | Metric::BarOverError => Err("the metric needs a table of cases".into()),
-            Metric::StructureMean
-            | Metric::StructureLargest
-            | Metric::StructureAmplitude
-            | Metric::StructureFrequency
-            | Metric::StructureGrowthRate
-            | Metric::StructureDampingRatio
-            | Metric::WorkLedger
-            | Metric::ThinFrequency
-            | Metric::ThinGrowthRate
-            | Metric::EquilibriumAngleError
-            | Metric::DivergenceSpeedError
-            | Metric::FrequencyStepOrder
-            | Metric::AmplitudeStepOrder => self.of_structure(claim, others),
-        }
+            _ => return None,
+        })
+    }
+
+    /// |Â₁ − B̂₁|/|B̂₁| of the first harmonics of this lift and of that of the run `other`.
+    fn lift_error(&self, other: &Self) -> Value {
+        let other = other.lift()?;
+        Ok((self.lift()? - other).norm() / other.norm())
     }
 
     /// First harmonic of the lift over that of the motion.
@@ -476,6 +490,16 @@ fn no_balance() -> String {
 
 fn no_wall() -> String {
     "there are no wall particles to compare".into()
+}
+
+/// Root mean square of differences on the wall.
+fn mean_of(differences: &[f64]) -> Value {
+    metrics::root_mean_square(differences, None).ok_or_else(no_wall)
+}
+
+/// Greatest of them.
+fn largest_of(differences: &[f64]) -> Value {
+    metrics::max_difference(differences, &vec![0.0; differences.len()]).ok_or_else(no_wall)
 }
 
 /// Difference of the means of two loops of a load, over the first harmonic of the second.

@@ -32,7 +32,8 @@ impl Measured {
                 Ok((self.linear(others)? / found).sqrt() - 1.0)
             }
             Metric::FrequencyStepOrder => self.step_order(others, |s| s.frequency(claim)),
-            _ => self.step_order(others, |s| s.amplitude(claim)),
+            Metric::AmplitudeStepOrder => self.step_order(others, |s| s.amplitude(claim)),
+            _ => Err("this is not measured of a run".into()),
         }
     }
 

@@ -3,8 +3,6 @@ pub(super) mod files;
 mod inspect;
 pub(super) mod pictures;
 mod saved;
-#[cfg(test)]
-mod tests;
 mod trial;
 
 pub(super) use files::Files;

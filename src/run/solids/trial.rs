@@ -74,35 +74,3 @@ fn coarser(case: &Case, factor: f64) -> Case {
     }
     case
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    fn of(until: f64, through: u32, velocity: f64) -> (Steps, f64) {
-        let text = format!(
-            "[[body]]\nname = \"bar\"\nbox = {{ size = [0.02, 0.01] }}\n[body.solid]\nthrough = {through}\n\
-             material = {{ density = 8930, young = 117e9, poisson = 0.35, yield = 4e8, hardening = 1e8 }}\n\
-             velocity = [\"{velocity} * x\", \"0\"]\n[time.explicit]\nuntil = {until}\n"
-        );
-        let case = crate::case::read(&text, "t").unwrap_or_else(|e| panic!("{e}"));
-        let built = build::<2>(&case, Path::new("")).unwrap();
-        let Temporal::Explicit(plan) = &case.time else { panic!() };
-        (steps(&case, Path::new(""), &built).unwrap(), until / (plan.cfl * step_at_rest(&built)))
-    }
-
-    #[test]
-    fn steps_of_a_body_that_is_squeezed_are_those_that_it_takes() {
-        let (slow, at_rest) = of(2e-6, 5, -1.0);
-        assert!(slow.is_known && (slow.number / at_rest - 1.0).abs() < 0.2, "{slow:?} {at_rest}");
-        // squeezed to a third of its length
-        let (fast, at_rest) = of(2e-5, 5, -40_000.0);
-        assert!(fast.number > 1.2 * at_rest, "{fast:?} {at_rest}");
-    }
-
-    #[test]
-    fn a_march_without_end_has_at_least_so_many_steps() {
-        let (endless, at_rest) = of(1e3, 9, -1.0);
-        assert!(!endless.is_known && endless.number >= 0.99 * at_rest, "{endless:?} {at_rest}");
-    }
-}

@@ -35,47 +35,16 @@ pub(super) fn columns(
         asked.sort(&mut matrices.columns);
         keep(matrices)
     };
-    let part = |k: usize, shocks: bool| Portion::of(k, &asked.clouds(shocks));
-    let found = asked.about(&steady, &mut add, &mut Within { outer: part(0, false), monitor: &mut *monitor })?;
-    let Some(SteadyFlow { cloud, solved, mut shocks }) = found else { return Ok(false) };
+    let outer = Portion::of(0, &asked.clouds(false));
+    let found = asked.about(&steady, &mut add, &mut Within { outer, monitor: &mut *monitor })?;
+    let Some(SteadyFlow { cloud, solved, shocks }) = found else { return Ok(false) };
     if !solved {
         monitor.warn("the steady flow did not converge: forces about it are doubtful");
         matrices.columns.iter_mut().for_each(|c| c.converged = false);
         keep(matrices)?;
     }
     let one = steady.on_cloud(cloud)?;
-    let mut others = Vec::new();
-    for ratio in [COARSER, BETWEEN] {
-        if !plan.cloud_error || (ratio != COARSER && !shocks) {
-            break;
-        }
-        let coarse = match one.on_spacing(ratio) {
-            Ok(Some(coarse)) => coarse,
-            Ok(None) => continue,
-            Err(problem) => {
-                monitor.note(&format!("the coarser cloud tells nothing: {problem}"));
-                continue;
-            }
-        };
-        monitor.note(&format!("the same on a cloud with {}", times_the_spacing(ratio)));
-        let mut other = Vec::new();
-        let mut add = |found: Vec<Column>| {
-            other.extend(found);
-            asked.sort(&mut other);
-            Ok(())
-        };
-        let outer = part(if ratio == COARSER { 1 } else { 2 }, shocks);
-        match asked.about(&coarse, &mut add, &mut Within { outer, monitor: &mut Quiet { monitor } }) {
-            Ok(Some(flow)) if flow.solved => {
-                shocks |= flow.shocks;
-                others.push((refinement(one.given(), ratio), other));
-            }
-            Ok(Some(_)) => monitor.note("the coarser cloud tells nothing: the steady flow on it did not converge"),
-            Ok(None) => return Ok(false),
-            // a cloud that is too coarse for the body tells nothing of the one that is not
-            Err(problem) => monitor.note(&format!("the coarser cloud tells nothing: {problem}")),
-        }
-    }
+    let Some(others) = asked.on_coarser_clouds(&one, shocks, monitor)? else { return Ok(false) };
     if coarser(one.given(), COARSER).is_none() {
         cloud_error::untold(plan, one.given()).iter().for_each(|why| monitor.note(why));
     }
@@ -130,6 +99,49 @@ impl Asked<'_> {
         let Ok(Solution { summary, .. }) = flow.conclude(None)? else { return Ok(None) };
         let solved = summary.succeeded();
         Ok(Some(SteadyFlow { cloud: summary.conditions.cloud, solved, shocks }))
+    }
+
+    /// The columns on coarser clouds than that of `one`, with the factor on its spacing, where errors are asked for; of clouds between
+    /// there is one where `shocks` are captured. `None` when the monitor says stop.
+    fn on_coarser_clouds(
+        &self,
+        one: &Problem,
+        mut shocks: bool,
+        monitor: &mut dyn Monitor,
+    ) -> Result<Option<Vec<(f64, Vec<Column>)>>, RunError> {
+        let mut others = Vec::new();
+        for ratio in [COARSER, BETWEEN] {
+            if !self.plan.cloud_error || (ratio != COARSER && !shocks) {
+                break;
+            }
+            let coarse = match one.on_spacing(ratio) {
+                Ok(Some(coarse)) => coarse,
+                Ok(None) => continue,
+                Err(problem) => {
+                    monitor.note(&format!("the coarser cloud tells nothing: {problem}"));
+                    continue;
+                }
+            };
+            monitor.note(&format!("the same on a cloud with {}", times_the_spacing(ratio)));
+            let mut other = Vec::new();
+            let mut add = |found: Vec<Column>| {
+                other.extend(found);
+                self.sort(&mut other);
+                Ok(())
+            };
+            let outer = Portion::of(if ratio == COARSER { 1 } else { 2 }, &self.clouds(shocks));
+            match self.about(&coarse, &mut add, &mut Within { outer, monitor: &mut Quiet { monitor } }) {
+                Ok(Some(flow)) if flow.solved => {
+                    shocks |= flow.shocks;
+                    others.push((refinement(one.given(), ratio), other));
+                }
+                Ok(Some(_)) => monitor.note("the coarser cloud tells nothing: the steady flow on it did not converge"),
+                Ok(None) => return Ok(None),
+                // a cloud that is too coarse for the body tells nothing of the one that is not
+                Err(problem) => monitor.note(&format!("the coarser cloud tells nothing: {problem}")),
+            }
+        }
+        Ok(Some(others))
     }
 
     /// Hands the columns about a flow that is known to `add`, frequency by frequency; true where that flow is faster than sound somewhere,

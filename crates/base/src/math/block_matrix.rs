@@ -5,6 +5,8 @@
 //! rounding takes from a block goes to the diagonal of its row. Unknowns are to be scaled so that the entries of a block are of
 //! one size ([`BlockMatrix::assemble`]). Sweeps are Gauss-Seidel inside fixed parts of consecutive rows and Jacobi between them, so
 //! that the result does not depend on the number of threads.
+mod rows;
+
 use std::ops::Range;
 use std::sync::Arc;
 
@@ -12,7 +14,9 @@ use multiversion::multiversion;
 
 use super::blocks::{MOST_ENTRIES, array, invert_block, store, with_block};
 use super::parallel::{copy, fill, parts, sweep_parts, sweep_rows, sweep_two_parts};
-use super::rounded::{LANES, UNIT, add_block, leading, load, load_lanes, multiply, round_block, subtract, unit_of};
+use super::rounded::{LANES, UNIT, add_block, leading, load, load_lanes, multiply, round_block, subtract};
+
+pub use rows::Rows;
 
 /// Fewest and most rows in one part of a coarse matrix.
 const PART: [usize; 2] = [64, 1024];
@@ -517,79 +521,6 @@ fn relax_part<const N: usize>(
 fn cut(i: usize, part: &Range<usize>, row: &[u32]) -> [u16; 3] {
     assert!(row.len() <= usize::from(u16::MAX), "a row of {} blocks", row.len());
     [part.start, i, part.end].map(|limit| row.partition_point(|j| (*j as usize) < limit) as u16)
-}
-
-/// Adds to the blocks of the rows of one part.
-pub struct Rows<'a> {
-    first: &'a [u32],
-    column: &'a Columns,
-    value: &'a mut [u8],
-    diagonal: &'a mut [f32],
-    start: usize,
-    block: usize,
-    /// What entries are multiplied by, for their scale and for means.
-    factor: &'a [f32; MOST_ENTRIES],
-}
-
-impl Rows<'_> {
-    /// Adds `f(r, c)` to the block that couples row `i` to column `j`; does nothing when the pattern has none.
-    pub fn add(&mut self, i: usize, j: usize, f: impl Fn(usize, usize) -> f64) {
-        let n = self.block;
-        let mut block = [0.0; MOST_ENTRIES];
-        (0..n).for_each(|c| (0..n).for_each(|r| block[c * n + r] = f(r, c) as f32));
-        match i == j {
-            true => self.add_own(n, i, &block),
-            false => self.add_other(n, (i, j), &block),
-        }
-    }
-
-    /// Adds `block`, by columns, to the diagonal block of row `i`; told the order `n` of the blocks, faster where that is a constant.
-    #[inline(always)]
-    pub fn add_own(&mut self, n: usize, i: usize, block: &[f32]) {
-        debug_assert_eq!(n, self.block);
-        let at = (i - self.start) * n * n;
-        let (own, block, factor) = (&mut self.diagonal[at..at + n * n], &block[..n * n], &self.factor[..n * n]);
-        for k in 0..n * n {
-            own[k] += factor[k] * block[k];
-        }
-    }
-
-    /// Adds `block`, by columns, to the one that couples row `i` to another column `j`; does nothing when the pattern has none.
-    #[inline(always)]
-    pub fn add_other(&mut self, n: usize, (i, j): (usize, usize), block: &[f32]) {
-        debug_assert_eq!(n, self.block);
-        let Some(k) = position(self.column.of(i, self.first), j as u32) else { return };
-        let own = (i - self.start) * n * n;
-        let at = ((self.first[i] - self.first[self.start]) as usize + k) * (UNIT + n * n);
-        let stored = &mut self.value[at..at + UNIT + n * n];
-        let (unit, block, factor) = (unit_of(stored), &block[..n * n], &self.factor[..n * n]);
-        let mut sum = [0.0; MOST_ENTRIES];
-        for k in 0..n * n {
-            sum[k] = factor[k] * block[k];
-        }
-        if unit > 0.0 {
-            for k in 0..n * n {
-                sum[k] += unit * f32::from(stored[UNIT + k] as i8);
-            }
-        }
-        round_block(&sum[..n * n], stored, &mut self.diagonal[own..own + n * n]);
-    }
-}
-
-/// Where `j` is in an ascending list.
-#[inline(always)]
-fn position(list: &[u32], j: u32) -> Option<usize> {
-    const STEP: usize = 8;
-    let mut k = 0;
-    while k + STEP <= list.len() && list[k + STEP - 1] < j {
-        k += STEP;
-    }
-    let mut smaller = 0u32;
-    for c in &list[k..list.len().min(k + STEP)] {
-        smaller += u32::from(*c < j);
-    }
-    k += smaller as usize;
-    (k < list.len() && list[k] == j).then_some(k)
 }
 
 #[cfg(test)]

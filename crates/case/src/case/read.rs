@@ -17,7 +17,7 @@ use super::draft::{Draft, closest, with_point};
 use super::error::{CaseErrors, MOST_SHOWN, quote};
 use super::keys::CASE;
 use super::polar;
-use super::quantity::PURE;
+use super::quantity::{Dimension, PURE};
 use super::schema::{Absent, Field, Kind, List, Range, Table, Variant, one_of};
 use super::text::open_regular;
 
@@ -111,19 +111,7 @@ impl Reader<'_> {
     fn value(&mut self, kind: &'static Kind, item: &Item<'_>, path: &str) -> Option<Value> {
         match (kind, item.get_ref()) {
             (Kind::Number(range), value) if number(value).is_some() => self.number(number(value)?, range, item, path),
-            (Kind::Quantity(dimension, range), value) => {
-                let parsed = match value {
-                    DeValue::String(text) => dimension.parse(text),
-                    other => match number(other) {
-                        Some(x) => dimension.plain(x),
-                        None => return self.wrong(kind, item, path),
-                    },
-                };
-                match parsed {
-                    Ok(x) => self.number(x, range, item, path),
-                    Err(error) => self.bad_quantity(kind, &error.to_string(), item, path),
-                }
-            }
+            (Kind::Quantity(dimension, range), _) => self.quantity(kind, (dimension, range), item, path),
             (Kind::Values(one), _) => self.values(one, item, path),
             (Kind::Integer(min, max), value) => self.whole(kind, (*min, *max), number(value), item, path),
             (Kind::IntegerOr(_, _, word), DeValue::String(text)) if text.as_ref() == *word => Some(json!(word)),
@@ -167,6 +155,27 @@ impl Reader<'_> {
             (Kind::Choice(variants), DeValue::String(text)) => self.choose(variants, text, item, path),
             (Kind::Choice(variants), DeValue::Table(document)) => self.choose_table(variants, document, item, path),
             _ => self.wrong(kind, item, path),
+        }
+    }
+
+    /// A number with a unit, or one in the usual unit.
+    fn quantity(
+        &mut self,
+        kind: &'static Kind,
+        (dimension, range): (&Dimension, &Range),
+        item: &Item<'_>,
+        path: &str,
+    ) -> Option<Value> {
+        let parsed = match item.get_ref() {
+            DeValue::String(text) => dimension.parse(text),
+            other => match number(other) {
+                Some(x) => dimension.plain(x),
+                None => return self.wrong(kind, item, path),
+            },
+        };
+        match parsed {
+            Ok(x) => self.number(x, range, item, path),
+            Err(error) => self.bad_quantity(kind, &error.to_string(), item, path),
         }
     }
 

@@ -26,7 +26,9 @@ pub use varied::Varied;
 
 use num_complex::Complex64;
 
+mod crossings;
 mod g_method;
+mod modal;
 mod natural;
 mod start;
 pub mod state_space;
@@ -34,8 +36,7 @@ mod still;
 mod varied;
 
 use super::Matrices;
-use crate::math::singular::Singular;
-use crate::math::symmetric;
+use modal::Modes;
 
 /// First speed of a branch divided by the last.
 const FIRST: f64 = 1e-3;
@@ -53,20 +54,14 @@ const SAME_ROOT: f64 = 0.2;
 const BESIDE: [f64; 3] = [1e-3, 1e-2, 1e-4];
 /// Greatest number of Newton steps; five reach round-off unless roots are close.
 const NEWTON: usize = 40;
-/// Change of root and shape at which the Newton iteration ends, and the change that is acceptable when it stagnates.
-const CONVERGED: [f64; 2] = [1e-14, 1e-8];
 /// Greatest number of secant steps for κ.
 const SECANT: usize = 60;
 /// Relative change of the frequency at which the secant iteration ends, and at which it may stagnate.
 const MATCHED: [f64; 2] = [1e-12, 1e-10];
 /// Ratio of growth rate and root below which a motion is neutral; far above round-off.
 const NEUTRAL: f64 = 1e-9;
-/// Relative width of the interval of a flutter point, and relative growth rate there, at which its location ends.
-const LOCATED: [f64; 2] = [1e-13, 1e-15];
 /// Ratio of imaginary and real part below which an eigenvalue counts as real.
 const REAL: f64 = 1e-8;
-/// Squared natural frequencies nearer than the first value (relative) are separated by the second until forces act.
-const CLOSE: [f64; 2] = [1e-3, 1e-2];
 /// Squared frequency relative to the largest, below which a mode has no stiffness except round-off.
 const RIGID: f64 = 1e-13;
 const ZERO: Complex64 = Complex64::new(0.0, 0.0);
@@ -132,21 +127,6 @@ pub struct Crossing {
     pub kappa: f64,
     /// Complex amplitudes of the coordinates, with generalised mass 1.
     pub shape: Vec<Complex64>,
-}
-
-/// Matrices in modal coordinates, in which the mass matrix is the identity; row by row.
-#[derive(Clone)]
-struct Modes {
-    n: usize,
-    /// Squared natural frequencies, ascending.
-    squares: Vec<f64>,
-    /// Modal matrix Φ, and Φ⁻¹ = ΦᵀM.
-    basis: Vec<f64>,
-    inverse: Vec<f64>,
-    damping: Vec<Complex64>,
-    stiffness: Vec<Complex64>,
-    /// Artificial separation of close squared frequencies.
-    apart: Vec<f64>,
 }
 
 /// Varied quantity, and fraction of damping and forces that acts.
@@ -242,64 +222,10 @@ impl<'a> Flutter<'a> {
         path.pop().filter(|_| arrived).map(|root| Root { rate: ZERO, ..root })
     }
 
-    /// Stability boundaries of the `branches`, and divergence below `upto`, in ascending order of speed. A motion that
-    /// is unstable from the start has its boundary at zero when density is varied, and none when speed is varied.
-    pub fn crossings(&self, branches: &[Vec<Point>], upto: f64) -> Vec<Crossing> {
-        let Some(modes) = &self.modes else { return Vec::new() };
-        let mut found = self.divergence(modes, upto);
-        for (mode, branch) in branches.iter().enumerate() {
-            found.extend(self.begun_at_the_start(modes, mode, branch));
-            for bracket in brackets(branch) {
-                let Some(root) = self.locate(modes, branch, &bracket) else { continue };
-                let (x, frequency) = (root.place.x, root.lambda.im);
-                let shape = modes.coordinates(&root.shape);
-                let (speed, pressure) = (self.speed(x), self.pressure(x));
-                let kappa = frequency / speed;
-                let (kind, branch) = (bracket.kind, Branch::Mode(mode));
-                found.push(Crossing { kind, branch, mode, x, speed, pressure, frequency, kappa, shape });
-            }
-        }
-        found.sort_by(|a, b| a.x.total_cmp(&b.x));
-        found
-    }
-
     /// Forces Q(iκ) in modal coordinates; `None` when they are not finite.
     fn modal(&self, modes: &Modes, kappa: f64) -> Option<Vec<Complex64>> {
         let forces = (self.forces)(kappa);
         (forces.len() == modes.n * modes.n && forces.iter().all(|f| f.is_finite())).then(|| modes.project(&forces))
-    }
-
-    /// The root on a branch where its growth rate changes sign.
-    fn locate(&self, modes: &Modes, branch: &[Point], bracket: &Bracket) -> Option<Root> {
-        let [mut low, mut high] = [modes.root(branch, bracket.low)?, modes.root(branch, bracket.high)?];
-        let mut size = [growth(low.lambda), growth(high.lambda)];
-        let before = bracket.kind == Kind::Restabilised;
-        let mut last = None;
-        for _ in 0..2 * NEWTON {
-            let (a, b) = (low.place.x, high.place.x);
-            if b - a <= LOCATED[0] * b {
-                break;
-            }
-            let secant = (a * size[1] - b * size[0]) / (size[1] - size[0]);
-            let x = if bracket.simple && a < secant && secant < b { secant } else { 0.5 * (a + b) };
-            let (mut path, arrived) = self.follow(modes, low.clone(), Place { x, on: 1.0 }, b - a);
-            let root = path.pop().filter(|_| arrived)?;
-            let rate = growth(root.lambda);
-            if bracket.simple && rate.abs() <= LOCATED[1] {
-                return Some(root);
-            }
-            let below = (rate > if bracket.simple { 0.0 } else { NEUTRAL }) == before;
-            // the value at an end that is retained twice is halved (Illinois method)
-            let kept = usize::from(below);
-            if last == Some(below) {
-                size[kept] *= 0.5;
-            }
-            size[1 - kept] = rate;
-            last = Some(below);
-            *(if below { &mut low } else { &mut high }) = root;
-        }
-        // where roots coalesce, the frequency is smooth on the unstable side
-        Some(if before { low } else { high })
     }
 
     /// Roots on the line from `from` to `to` in steps of at most `longest`, and whether the end is reached.
@@ -395,138 +321,6 @@ impl<'a> Flutter<'a> {
     }
 }
 
-impl Modes {
-    fn new(matrices: &Matrices) -> Option<Self> {
-        let n = matrices.mass.len().isqrt();
-        let square = |a: &[f64]| a.len() == n * n && a.iter().all(|x| x.is_finite());
-        if n == 0 || ![&matrices.mass, &matrices.damping, &matrices.stiffness].into_iter().all(|a| square(a)) {
-            return None;
-        }
-        let inverse = inverse_factor(&symmetric::cholesky(&matrices.mass, n)?, n);
-        // G⁻¹ K G⁻ᵀ of the symmetric part of K
-        let k = |i: usize, j: usize| 0.5 * (matrices.stiffness[i * n + j] + matrices.stiffness[j * n + i]);
-        let half: Vec<f64> = (0..n * n).map(|e| (0..n).map(|l| inverse[e / n * n + l] * k(l, e % n)).sum()).collect();
-        let entry = |i: usize, j: usize| (0..n).map(|l| half[i * n + l] * inverse[j * n + l]).sum::<f64>();
-        let columns: Vec<Vec<f64>> =
-            (0..n).map(|j| (0..n).map(|i| 0.5 * (entry(i, j) + entry(j, i))).collect()).collect();
-        let found = Singular::of(columns);
-        // A v = λ v, so that the left vectors are the right ones multiplied by λ
-        let quotient = |(left, right): (&Vec<f64>, &Vec<f64>)| left.iter().zip(right).map(|(l, r)| l * r).sum::<f64>();
-        let mut order: Vec<(f64, &Vec<f64>)> =
-            found.left.iter().zip(&found.right).map(|pair| (quotient(pair), pair.1)).collect();
-        order.sort_by(|a, b| a.0.total_cmp(&b.0));
-        let squares: Vec<f64> = order.iter().map(|mode| mode.0).collect();
-        let mut basis = vec![0.0; n * n];
-        for (m, (_, v)) in order.iter().enumerate() {
-            (0..n).for_each(|i| basis[i * n + m] = (0..n).map(|l| inverse[l * n + i] * v[l]).sum());
-        }
-        let back = |e: usize| (0..n).map(|l| basis[l * n + e / n] * matrices.mass[l * n + e % n]).sum();
-        let inverse = (0..n * n).map(back).collect();
-        let apart = set_apart(&squares);
-        let mut modes = Self { n, squares, basis, inverse, damping: Vec::new(), stiffness: Vec::new(), apart };
-        let complex = |a: &[f64]| a.iter().map(|x| Complex64::from(*x)).collect::<Vec<_>>();
-        modes.damping = modes.project(&complex(&matrices.damping));
-        modes.stiffness = modes.project(&complex(&matrices.stiffness));
-        Some(modes)
-    }
-
-    /// The modal matrix Φᵀ A Φ.
-    fn project(&self, a: &[Complex64]) -> Vec<Complex64> {
-        let n = self.n;
-        let half = |e: usize| (0..n).map(|l| a[e / n * n + l] * self.basis[l * n + e % n]).sum::<Complex64>();
-        let half: Vec<Complex64> = (0..n * n).map(half).collect();
-        (0..n * n).map(|e| (0..n).map(|l| half[l * n + e % n] * self.basis[l * n + e / n]).sum()).collect()
-    }
-
-    /// Coordinates Φ q of a modal shape.
-    fn coordinates(&self, shape: &[Complex64]) -> Vec<Complex64> {
-        self.basis.chunks_exact(self.n).map(|row| row.iter().zip(shape).map(|(b, q)| q * *b).sum()).collect()
-    }
-
-    /// Point `k` of a branch as a root; its derivative is the difference quotient to the previous point.
-    fn root(&self, branch: &[Point], k: usize) -> Option<Root> {
-        let point = branch.get(k).filter(|point| point.shape.len() == self.n)?;
-        let modal: Vec<Complex64> = self
-            .inverse
-            .chunks_exact(self.n)
-            .map(|row| row.iter().zip(&point.shape).map(|(b, q)| q * *b).sum())
-            .collect();
-        let size = inner(&modal, &modal).re.sqrt();
-        let shape = modal.into_iter().map(|q| q / size).collect();
-        let before = k.checked_sub(1).map(|k| &branch[k]);
-        let rate = before.map_or(ZERO, |b| (point.lambda - b.lambda) / (point.x - b.x));
-        Some(Root { place: Place { x: point.x, on: 1.0 }, lambda: point.lambda, shape, rate })
-    }
-
-    /// Root and shape of λ² + `on` C λ + A by Newton's method from a guess; the shape has the product 1 with `near`.
-    fn newton(
-        &self,
-        a: &[Complex64],
-        on: f64,
-        (mut lambda, mut shape): (Complex64, Vec<Complex64>),
-        near: &[Complex64],
-    ) -> Option<(Complex64, Vec<Complex64>)> {
-        let (n, width) = (self.n, self.n + 1);
-        let mut last = f64::INFINITY;
-        for _ in 0..NEWTON {
-            let (mut matrix, mut right) = (vec![ZERO; width * width], vec![ZERO; width]);
-            for i in 0..n {
-                let row = &mut matrix[i * width..][..width];
-                row[n] = 2.0 * lambda * shape[i];
-                for j in 0..n {
-                    let damping = self.damping[i * n + j] * on;
-                    let diagonal = if i == j { lambda * lambda + (1.0 - on) * self.apart[i] } else { ZERO };
-                    row[j] = a[i * n + j] + damping * lambda + diagonal;
-                    row[n] += damping * shape[j];
-                    right[i] -= row[j] * shape[j];
-                }
-            }
-            near.iter().enumerate().for_each(|(j, q)| matrix[n * width + j] = q.conj());
-            right[n] = 1.0 - inner(near, &shape);
-            solve(&mut matrix, &mut right)?;
-            lambda += right[n];
-            shape.iter_mut().zip(&right).for_each(|(q, dq)| *q += dq);
-            let turned = inner(&right[..n], &right[..n]).re.sqrt();
-            let change = turned.max(right[n].norm() / lambda.norm());
-            if change <= CONVERGED[0] || (change <= CONVERGED[1] && change >= last) {
-                return Some((lambda, shape));
-            }
-            last = change;
-        }
-        None
-    }
-}
-
-/// Two points of a branch between which its growth rate changes sign.
-struct Bracket {
-    kind: Kind,
-    low: usize,
-    high: usize,
-    /// True for decay on one side and growth on the other; otherwise the motion is neutral over an interval.
-    simple: bool,
-}
-
-fn brackets(branch: &[Point]) -> Vec<Bracket> {
-    let rates: Vec<f64> = branch.iter().map(|point| growth(point.lambda)).collect();
-    let (grows, decays) = (|k: usize| rates[k] > NEUTRAL, |k: usize| rates[k] < -NEUTRAL);
-    let mut found = Vec::new();
-    for k in (1..rates.len()).filter(|k| grows(k - 1) != grows(*k)) {
-        let kind = if grows(k) { Kind::Flutter } else { Kind::Restabilised };
-        // neutral points may be followed by decay
-        let sure = match kind {
-            Kind::Flutter => (0..k).rev().find(|j| grows(*j) || decays(*j)),
-            _ => (k..rates.len()).find(|j| grows(*j) || decays(*j)),
-        };
-        let sure = sure.filter(|j| decays(*j));
-        let (low, high) = match kind {
-            Kind::Flutter => (sure.unwrap_or(k - 1), k),
-            _ => (k - 1, sure.unwrap_or(k)),
-        };
-        found.push(Bracket { kind, low, high, simple: sure.is_some() });
-    }
-    found
-}
-
 /// Relative growth rate Re λ/|λ|.
 fn growth(lambda: Complex64) -> f64 {
     lambda.re / lambda.norm()
@@ -544,56 +338,6 @@ fn least(values: impl Iterator<Item = f64>) -> usize {
 /// Index of the mode with the largest share.
 fn largest_share(shape: &[Complex64]) -> usize {
     least(shape.iter().map(|q| -q.norm()))
-}
-
-/// Inverse G⁻¹ of the lower triangular matrix G.
-fn inverse_factor(factor: &[f64], n: usize) -> Vec<f64> {
-    let mut x = vec![0.0; n * n];
-    for i in 0..n {
-        for j in 0..=i {
-            let known: f64 = (j..i).map(|k| factor[i * n + k] * x[k * n + j]).sum();
-            x[i * n + j] = (if i == j { 1.0 } else { 0.0 } - known) / factor[i * n + i];
-        }
-    }
-    x
-}
-
-/// Values to be added to close squared frequencies in order to separate them.
-fn set_apart(squares: &[f64]) -> Vec<f64> {
-    let mut last = f64::NEG_INFINITY;
-    let apart = squares.iter().map(|square| {
-        let close = *square > 0.0 && *square < last * (1.0 + CLOSE[0]);
-        last = if close { last * (1.0 + CLOSE[1]) } else { *square };
-        last - square
-    });
-    apart.collect()
-}
-
-/// Solves A x = b in place by elimination with partial pivoting; `None` when A is singular.
-fn solve(matrix: &mut [Complex64], right: &mut [Complex64]) -> Option<()> {
-    let n = right.len();
-    for k in 0..n {
-        let pivot = k + least((k..n).map(|i| -matrix[i * n + k].norm()));
-        (0..n).for_each(|j| matrix.swap(k * n + j, pivot * n + j));
-        right.swap(k, pivot);
-        let diagonal = matrix[k * n + k];
-        if !(diagonal.norm() > 0.0 && diagonal.is_finite()) {
-            return None;
-        }
-        let (above, below) = matrix.split_at_mut((k + 1) * n);
-        let row = &above[k * n..];
-        let value = right[k];
-        for (other, rest) in below.chunks_exact_mut(n).zip(&mut right[k + 1..]) {
-            let factor = other[k] / diagonal;
-            other[k + 1..].iter_mut().zip(&row[k + 1..]).for_each(|(a, b)| *a -= factor * b);
-            *rest -= factor * value;
-        }
-    }
-    for k in (0..n).rev() {
-        let known: Complex64 = (k + 1..n).map(|j| matrix[k * n + j] * right[j]).sum();
-        right[k] = (right[k] - known) / matrix[k * n + k];
-    }
-    Some(())
 }
 
 #[cfg(test)]

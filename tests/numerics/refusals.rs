@@ -1,12 +1,31 @@
-//! Refusals and warnings of problems: what opening one says, `check` says as well.
+//! Refusals and warnings of problems: what a command refuses, `check` refuses as well.
 use std::path::Path;
 
-use crate::case::read;
-use crate::run::refusals::as_checked;
+use alula::case::{Case, read};
+use alula::problem::{Problem, Remark, RunError};
+use alula::run;
+
+/// The same result of a command; where the case is to blame, `check` must have refused it as well.
+fn as_checked<T>(case: &Case, input: &Path, seen: Result<T, RunError>) -> Result<T, RunError> {
+    if let Err(problem) = &seen {
+        let told = problem.messages();
+        let checked = run::refusals(case, input).into_iter().chain(run::inspect(case, input, None).err());
+        let checked: Vec<String> = checked.map(|p| p.to_string()).collect();
+        assert!(told.iter().all(|part| checked.contains(part)), "`check` does not refuse: {told:?}");
+    }
+    seen
+}
+
+/// Warnings of opening the problem of a case, or why it is refused.
+fn opened(text: &str) -> Result<Vec<String>, String> {
+    let case = read(text, "t").unwrap_or_else(|e| panic!("{e}"));
+    let problem = as_checked(&case, Path::new(""), Problem::of_case(&case, "")).map_err(|e| e.to_string())?;
+    let warning = |remark: &Remark| if let Remark::Warning(text) = remark { Some(text.clone()) } else { None };
+    Ok(problem.remarks().iter().filter_map(warning).collect())
+}
 
 mod motion_feasibility {
     use super::*;
-    use crate::problem::{check_motion as check, motions};
 
     /// What is told of two circles, of which the second moves by `motion`.
     fn told(motion: &str, time: &str) -> Result<Vec<String>, String> {
@@ -16,10 +35,8 @@ mod motion_feasibility {
              domain = {{ min = [-3.2, -3.2], max = [6.4, 3.2] }}\n[time.dual]\n{time}\n"
         );
         let case = read(&text, "case.toml").unwrap_or_else(|e| panic!("{e}"));
-        let (surface, cloud, _) = crate::run::build_cloud::<2>(&case, Path::new("")).unwrap();
-        let motions = motions(&case, Path::new(""), surface.as_ref()).unwrap();
-        let seen = check(&case, &cloud, &motions);
-        as_checked(&case, Path::new(""), seen).map_err(|e| e.to_string())
+        let moves = |report: run::CloudReport| report.warnings.into_iter().filter(|w| w.contains("moves by")).collect();
+        run::inspect(&case, Path::new(""), None).map(moves).map_err(|e| e.to_string())
     }
 
     #[test]
@@ -48,14 +65,8 @@ mod motion_feasibility {
 
 mod sanity {
     use super::*;
-    use crate::problem::{motions, sane, surface};
-
     fn told(more: &str) -> Result<Vec<String>, String> {
-        let case = crate::case::read(&format!("[[body]]\nnaca = \"0012\"\n{more}"), "t").unwrap();
-        let (surface, _) = surface::<2>(&case, Path::new("")).unwrap();
-        let motions = motions(&case, Path::new(""), surface.as_ref()).unwrap();
-        let seen = sane(&case, surface.as_ref(), &motions);
-        as_checked(&case, Path::new(""), seen).map_err(|e| e.to_string())
+        opened(&format!("[[body]]\nnaca = \"0012\"\n{more}"))
     }
 
     #[test]
@@ -114,8 +125,6 @@ mod sanity {
 
 mod assembly {
     use super::*;
-    use crate::problem::supported;
-
     #[test]
     fn a_crevice_without_conservative_coefficients_is_refused_with_its_place() {
         let built = |more: &str| {
@@ -124,8 +133,8 @@ mod assembly {
                  [0.5, 0.5], [0.079, 0.5], [0, -0.1], [-0.079, 0.5], [-0.5, 0.5]]\n[cloud]\nspacing = 0.06\nfar_field = 2\n\
                  edge_levels = 1\nwall_layers = {{ first = 0.008 }}\n[scheme]\n{more}"
             );
-            let case = crate::case::read(&text, "t").unwrap();
-            let seen = crate::run::build_solver::<2>(&case, Path::new(""));
+            let case = read(&text, "t").unwrap();
+            let seen = run::build_solver::<2>(&case, Path::new(""));
             as_checked(&case, Path::new(""), seen).map_err(|e| e.to_string())
         };
         let message = built("").map(|_| ()).unwrap_err();
@@ -141,8 +150,7 @@ mod assembly {
                 "title = \"t\"\n[flow]\nmach = 0.1\n[[body]]\ncircle = {{ radius = 0.5 }}\n[cloud]\nspacing = 0.1\n[scheme]\n\
                  low_mach = true\n{more}"
             );
-            let case = crate::case::read(&text, "t").unwrap();
-            as_checked(&case, Path::new(""), supported(&case)).map_err(|e| e.to_string())
+            opened(&text)
         };
         assert!(told("").is_ok());
         assert!(told("conservative = false").unwrap_err().contains("`low_mach = true` needs `conservative = true`"));
@@ -158,7 +166,6 @@ mod assembly {
 
 mod probes {
     use super::*;
-    use crate::run::inspect_structure;
 
     fn told(at: &str) -> Result<Vec<String>, String> {
         let text = format!(
@@ -167,7 +174,7 @@ mod probes {
              [time.explicit]\nuntil = 1\n"
         );
         let case = read(&text, "t").unwrap_or_else(|e| panic!("{e}"));
-        inspect_structure(&case, Path::new(".")).map(|r| r.warnings).map_err(|e| e.to_string())
+        run::inspect_structure(&case, Path::new(".")).map(|r| r.warnings).map_err(|e| e.to_string())
     }
 
     #[test]
@@ -187,7 +194,6 @@ mod probes {
 
 mod filling {
     use super::*;
-    use crate::run::inspect_structure;
 
     #[test]
     fn bodies_whose_particles_coordinates_do_not_tell_apart_are_refused() {
@@ -197,7 +203,7 @@ mod filling {
                  material = {{ density = 1000, young = 1e6, poisson = 0.3 }}\n[time.explicit]\nuntil = 1\n"
             );
             let case = read(&text, "t").unwrap_or_else(|e| panic!("{e}"));
-            inspect_structure(&case, Path::new(".")).map(|r| r.particles).map_err(|e| e.to_string())
+            run::inspect_structure(&case, Path::new(".")).map(|r| r.particles).map_err(|e| e.to_string())
         };
         assert_eq!(told("[0, 0]"), told("[100, -100]"));
         for (at, words) in [
@@ -212,8 +218,6 @@ mod filling {
 
 mod size {
     use super::*;
-    use crate::case::Case;
-
     fn case(shape: &str, solid: &str) -> Case {
         let text = format!(
             "[[body]]\nname = \"plate\"\n{shape}\n[body.solid]\nmaterial = {{ density = 1000, young = 1e6, poisson = 0.3 }}\n{solid}\n\
@@ -230,9 +234,48 @@ mod size {
             ("sphere = { radius = 1 }", "spacing = 1e-6"),
             ("circle = { radius = 1 }", "spacing = 1e-9"),
         ] {
-            let problem = crate::run::inspect_structure(&case(shape, solid), Path::new(".")).unwrap_err();
+            let problem = run::inspect_structure(&case(shape, solid), Path::new(".")).unwrap_err();
             let text = problem.to_string();
             assert!(text.contains("solid particles") && text.contains("take a larger `spacing`"), "{shape}: {text}");
         }
     }
+}
+
+#[test]
+fn all_bad_files_of_a_case_are_told_at_once() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = |name: &str, text: &str| std::fs::write(folder.path().join(name), text).unwrap();
+    file("one.dat", "one\n1 0\n0 0\n");
+    file("two.dat", "two\n1 zero\n");
+    file("table.csv", "time,w\n0,0\n1,1\n");
+    file("mode.csv", "x,y,dx\n0,0,1\n");
+    let text = "[flow]\nmach = 0.5\n[[body]]\nairfoil = \"one.dat\"\n[[body]]\nairfoil = \"two.dat\"\ntranslate = [3, 0]\n\
+                motion.mode = { file = \"mode.csv\", amplitude = 0.1 }\nmotion.period = 5\n[motion]\ntable = \"table.csv\"\n\
+                [time.dual]\nstep = 0.1\nuntil = 1\n";
+    let case = read(text, "t").unwrap_or_else(|e| panic!("{e}"));
+    let places = run::Places { input: folder.path().into(), out: folder.path().join("out") };
+    let refused = run::run(&case, &places, &mut run::Silent).map(|_| ()).unwrap_err();
+    let told = refused.messages();
+    for name in ["one.dat", "two.dat", "table.csv", "mode.csv"] {
+        assert_eq!(told.iter().filter(|text| text.contains(name)).count(), 1, "{name}: {told:#?}");
+    }
+    let checked: Vec<String> = run::refusals(&case, folder.path()).iter().map(ToString::to_string).collect();
+    assert!(told.iter().all(|text| checked.contains(text)), "{checked:#?}");
+}
+
+#[test]
+fn references_without_their_columns_are_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    let told = |table: &str, shape: &str| {
+        std::fs::write(folder.path().join("cp.csv"), table).unwrap();
+        let text = format!("[flow]\nmach = 0.3\n[[body]]\n{shape}\n[[compare]]\nfile = \"cp.csv\"\n");
+        let case = read(&text, "t").unwrap();
+        run::refusals(&case, folder.path()).first().map(ToString::to_string)
+    };
+    let (section, sphere) = ("naca = \"0012\"", "sphere = { radius = 1 }");
+    let wrong = told("x,cp\n0,1\n", section).unwrap();
+    assert!(wrong.contains("`cp.csv` has no column `x_c`, but `x`, `cp`"), "{wrong}");
+    assert!(told("x_c,Cp\n0,high\n", section).unwrap().contains("no number in its column `Cp`"));
+    assert!(told("x_c,Cp\n0,1\n", sphere).unwrap().contains("no column `eta`"));
+    assert!(told("x_c;Cp\n0;1\n", section).is_none() && told("eta,x_c,Cp\n0.5,0,1\n", sphere).is_none());
 }

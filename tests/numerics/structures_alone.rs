@@ -1,9 +1,9 @@
-//! Runs of structures alone that are stopped, killed and gone on with, and checkpoints that are none of theirs.
+//! Structures alone: steps that `check` expects, runs that are stopped, killed and gone on with, checkpoints that are none of theirs.
 use std::path::Path;
 
-use crate::case::{Case, read};
-use crate::observe::checkpoint::{self, Array, Checkpoint};
-use crate::run::{Monitor, Outcome, Places, Tick, resume, run};
+use alula::case::{Case, read};
+use alula::observe::checkpoint::{self, Array, Checkpoint};
+use alula::run::{Monitor, Outcome, Places, SolidReport, Tick, inspect_structure, resume, run};
 
 /// A bar on a wall that is pulled at its end.
 fn bar(time: &str, output: &str) -> String {
@@ -48,7 +48,7 @@ fn gone_on(out: &Path) -> Result<Outcome, String> {
 }
 
 fn file(out: &Path, name: &str) -> String {
-    crate::problem::files::text(out, name).unwrap_or_else(|e| panic!("{name}: {e}"))
+    std::fs::read_to_string(out.join(name)).unwrap_or_else(|e| panic!("{name}: {e}"))
 }
 
 fn kept(out: &Path) -> Checkpoint<'static> {
@@ -107,7 +107,7 @@ fn runs_whose_case_became_another_are_refused() {
         assert!(refused.contains(word) && refused.contains("hint: "), "{to}: {refused}");
         put(&out, &original);
     }
-    let other = crate::case::write(&case(&bar(NEWMARK, "")));
+    let other = alula::case::write(&case(&bar(NEWMARK, "")));
     put(&out, &other);
     let refused = gone_on(&out).unwrap_err();
     assert!(refused.contains("asks for `[time.newmark]`, but the run began with `[time.explicit]`"), "{refused}");
@@ -200,4 +200,31 @@ fn a_march_that_breaks_off_leaves_numbers_that_a_later_one_goes_on_from() {
     assert!(broken.contains("the last good state is in"), "{broken}");
     let again = gone_on(&out).unwrap_err();
     assert!(again.contains("the last good state is in"), "{again}");
+}
+
+/// What is told of the march of a bar that is squeezed, and its number of steps were they as long as the first one.
+fn squeezed(until: f64, through: u32, velocity: f64) -> (SolidReport, f64) {
+    let text = format!(
+        "[[body]]\nname = \"bar\"\nbox = {{ size = [0.02, 0.01] }}\n[body.solid]\nthrough = {through}\n\
+         material = {{ density = 8930, young = 117e9, poisson = 0.35, yield = 4e8, hardening = 1e8 }}\n\
+         velocity = [\"{velocity} * x\", \"0\"]\n[time.explicit]\nuntil = {until}\ncfl = 0.5\n"
+    );
+    let report = inspect_structure(&case(&text), Path::new("")).unwrap_or_else(|e| panic!("{e}"));
+    let at_rest = until / (0.5 * report.stable_step);
+    (report, at_rest)
+}
+
+#[test]
+fn steps_of_a_body_that_is_squeezed_are_those_that_it_takes() {
+    let (slow, at_rest) = squeezed(2e-6, 5, -1.0);
+    assert!(!slow.more_steps && (slow.steps.unwrap() / at_rest - 1.0).abs() < 0.2, "{slow:?} {at_rest}");
+    // squeezed to a third of its length
+    let (fast, at_rest) = squeezed(2e-5, 5, -40_000.0);
+    assert!(fast.steps.unwrap() > 1.2 * at_rest, "{fast:?} {at_rest}");
+}
+
+#[test]
+fn a_march_without_end_has_at_least_so_many_steps() {
+    let (endless, at_rest) = squeezed(1e3, 9, -1.0);
+    assert!(endless.more_steps && endless.steps.unwrap() >= 0.99 * at_rest, "{endless:?} {at_rest}");
 }
