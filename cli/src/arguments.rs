@@ -79,7 +79,7 @@ pub(crate) struct Run {
     pub(crate) threads: Threads,
     #[command(flatten)]
     pub(crate) verbosity: Verbosity,
-    /// Compute into the folder of an earlier run, whose results are renamed; without `--out` the first one of the case.
+    /// Compute into the folder of earlier results, which are renamed; without `--out` the first one of the case.
     #[arg(long)]
     pub(crate) force: bool,
     /// Start from the last state of another run on the same cloud: steady, marched, or periodic with any number of harmonics.
@@ -123,6 +123,9 @@ pub(crate) struct Cloud {
     /// Folder for the particle file; default: `runs/` and the name of the case with `-cloud`, with a number where that is taken.
     #[arg(long, value_name = "DIR")]
     pub(crate) out: Option<PathBuf>,
+    /// Compute into the folder of earlier results, which are renamed; without `--out` the first one of the case.
+    #[arg(long)]
+    pub(crate) force: bool,
     #[command(flatten)]
     pub(crate) threads: Threads,
 }
@@ -159,9 +162,12 @@ pub(crate) struct Report {
 pub(crate) struct Gaf {
     /// Case file with a table `[gaf]`.
     pub(crate) case: PathBuf,
-    /// Folder for the matrices and the runs.
+    /// Folder for the matrices; default: `runs/` and the name of the case with `-gaf`, with a number where that is taken.
     #[arg(long, value_name = "DIR")]
     pub(crate) out: Option<PathBuf>,
+    /// Compute into the folder of earlier results, which are renamed; without `--out` the first one of the case.
+    #[arg(long)]
+    pub(crate) force: bool,
     #[command(flatten)]
     pub(crate) threads: Threads,
     #[command(flatten)]
@@ -172,9 +178,12 @@ pub(crate) struct Gaf {
 pub(crate) struct Flutter {
     /// Case file with a `[structure]` and a table `[flutter]`.
     pub(crate) case: PathBuf,
-    /// Folder for the tables.
+    /// Folder for the tables; default: `runs/` and the name of the case with `-flutter`, with a number where that is taken.
     #[arg(long, value_name = "DIR")]
     pub(crate) out: Option<PathBuf>,
+    /// Compute into the folder of earlier results, which are renamed; without `--out` the first one of the case.
+    #[arg(long)]
+    pub(crate) force: bool,
     /// Take the forces from `flutter.json` or `gaf.json` of a former run: the structure alone, without a flow.
     #[arg(long, value_name = "FILE")]
     pub(crate) forces: Option<PathBuf>,

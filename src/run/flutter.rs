@@ -5,7 +5,7 @@ mod skin;
 mod state_space;
 mod tables;
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use self::kept::Kept;
 use self::skin::Skin;
@@ -50,6 +50,15 @@ pub fn again(
     monitor: &mut dyn Monitor,
 ) -> Result<Option<Boundary>, RunError> {
     sought(case, (&places.input, Some(&places.out)), Some(forces), monitor)
+}
+
+/// Makes room for a boundary that can be sought, with the forces of a file where one is given: earlier results in its folder are renamed; the new
+/// name, if there were any.
+pub fn set_aside(case: &Case, places: &Places, forces: Option<&Path>) -> Result<Option<PathBuf>, RunError> {
+    folder::make_room(&places.out, || match forces {
+        Some(file) => refused_with_forces(case, &planned(case)?).and_then(|()| read(file).map(|_| ())),
+        None => rehearse(case, &places.input),
+    })
 }
 
 /// True where `out` holds a boundary that was interrupted.

@@ -75,6 +75,18 @@ pub(crate) fn set_aside(out: &Path) -> Result<PathBuf, RunError> {
     })
 }
 
+/// Makes room for results that can be computed, as `rehearse` says: earlier results in their folder are renamed; the new name, if there were any.
+pub(crate) fn make_room(
+    out: &Path,
+    rehearse: impl FnOnce() -> Result<(), RunError>,
+) -> Result<Option<PathBuf>, RunError> {
+    if !out.exists() {
+        return Ok(None);
+    }
+    rehearse()?;
+    set_aside(out).map(Some)
+}
+
 /// Makes the run folder and puts the resolved case into it; true where a run was begun there before that kept nothing.
 pub(crate) fn create(case: &Case, input: &Path, out: &Path) -> Result<(bool, Hold), RunError> {
     let named = out.display();
@@ -109,7 +121,7 @@ pub(crate) fn create(case: &Case, input: &Path, out: &Path) -> Result<(bool, Hol
     Ok((used, held))
 }
 
-/// The same for what is no run, has no checkpoints and is not replaced: a cloud, or matrices.
+/// The same for what is no run and has no checkpoints: a cloud, matrices or a flutter boundary.
 pub(crate) fn create_once(case: &Case, input: &Path, out: &Path) -> Result<Hold, RunError> {
     // matrices are found in the same order again: those of this case that were not all found make room
     let same = || is_of(case, out);
@@ -120,7 +132,7 @@ pub(crate) fn create_once(case: &Case, input: &Path, out: &Path) -> Result<Hold,
     if out.join("case.toml").exists() && (other || !is_barely_begun(out)) {
         return Err(RunError::Folder {
             what: format!("`{}` holds earlier results", out.display()),
-            hint: "choose another folder with `--out`, or remove it".into(),
+            hint: "choose another folder with `--out`, or replace it with `--force`".into(),
         });
     }
     create(case, input, out).map(|(_, held)| held)
@@ -275,14 +287,14 @@ pub(crate) fn check_begun(out: &Path) -> Result<(), RunError> {
     if out.join(MATRICES).exists() {
         return Err(RunError::Folder {
             what: format!("`{named}` holds matrices of `alula gaf`, which is not resumed"),
-            hint: "begin it again with its case file: in the same folder where it was not finished, else in another"
+            hint: "begin it again with its case file: in the same folder where it was not finished, else in another or with `--force`"
                 .into(),
         });
     }
     if out.join(BOUNDARY).exists() {
         return Err(RunError::Folder {
             what: format!("`{named}` holds a flutter boundary that is finished"),
-            hint: "begin another one: `alula flutter` with its case file and another folder".into(),
+            hint: "begin another one: `alula flutter` with its case file, and another folder or `--force`".into(),
         });
     }
     let force = if is_barely_begun(out) { "" } else { " --force" };

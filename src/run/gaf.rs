@@ -1,5 +1,5 @@
 //! Generalised aerodynamic forces in folders.
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use num_complex::Complex64;
 use serde_json::json;
@@ -33,6 +33,11 @@ fn sought(case: &Case, places: &Places, monitor: &mut dyn Monitor) -> Result<Opt
     }
     folder::finish(&places.out)?;
     Ok(Some(matrices))
+}
+
+/// Makes room for matrices that can be computed: earlier results in their folder are renamed; the new name, if there were any.
+pub fn set_aside(case: &Case, places: &Places) -> Result<Option<PathBuf>, RunError> {
+    folder::make_room(&places.out, || rehearse(case, &places.input))
 }
 
 /// The same without a folder.

@@ -166,17 +166,19 @@ pub fn run_from(case: &Case, places: &Places, from: &Path, monitor: &mut dyn Mon
 
 /// Makes room for a case that can begin: an earlier run in its folder is renamed; its new name, if there was one.
 pub fn set_aside(case: &Case, places: &Places) -> Result<Option<PathBuf>, RunError> {
-    if !places.out.exists() {
-        return Ok(None);
-    }
-    folder::check_compared(case, &places.input)?;
-    if !case.has_gas() {
-        problem::solids::supported(case)?;
-        return folder::set_aside(&places.out).map(Some);
-    }
-    let held = case.flutter.is_some() && !case.is_trimmed();
-    refusals::rehearse(&Problem::of_case(case, &places.input)?, held)?;
-    folder::set_aside(&places.out).map(Some)
+    folder::make_room(&places.out, || {
+        folder::check_compared(case, &places.input)?;
+        if !case.has_gas() {
+            return problem::solids::supported(case).map(|_| ());
+        }
+        let held = case.flutter.is_some() && !case.is_trimmed();
+        refusals::rehearse(&Problem::of_case(case, &places.input)?, held)
+    })
+}
+
+/// The same for a cloud.
+pub fn set_aside_cloud(case: &Case, places: &Places) -> Result<Option<PathBuf>, RunError> {
+    folder::make_room(&places.out, || Problem::of_case(case, &places.input).map(|_| ()))
 }
 
 /// Goes on with an interrupted or killed run; one that is finished stays as it is.

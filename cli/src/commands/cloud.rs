@@ -1,7 +1,7 @@
 //! `alula cloud`.
 use std::path::{Path, PathBuf};
 
-use alula::run::{self, CloudReport};
+use alula::run::{self, CloudReport, Places};
 
 use super::run::name_of;
 use crate::arguments;
@@ -14,11 +14,15 @@ pub(crate) fn cloud(args: &arguments::Cloud) -> Outcome {
         Ok(case) => case,
         Err(outcome) => return outcome,
     };
-    let out = args
-        .out
-        .clone()
-        .unwrap_or_else(|| run::fresh_folder(Path::new("runs"), &format!("{}-cloud", name_of(&args.case))));
+    let name = format!("{}-cloud", name_of(&args.case));
+    let out = args.out.clone().unwrap_or_else(|| super::default_folder(&name, args.force));
     let input = args.case.parent().map_or_else(PathBuf::new, Path::to_path_buf);
+    let places = Places { input: input.clone(), out: out.clone() };
+    if args.force
+        && let Err(outcome) = super::tell_kept(run::set_aside_cloud(&case, &places), &out, false)
+    {
+        return outcome;
+    }
     match run::inspect(&case, &input, Some(&out)) {
         Ok(report) => {
             let done = output::data(&describe(&report));

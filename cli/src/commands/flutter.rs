@@ -19,15 +19,31 @@ pub(crate) fn flutter(args: &arguments::Flutter) -> Outcome {
         Err(outcome) => return outcome,
     };
     let name = args.case.file_stem().map_or_else(|| "flutter".to_owned(), |n| n.to_string_lossy().into_owned());
-    let out = args.out.clone().unwrap_or_else(|| run::fresh_folder(Path::new("runs"), &format!("{name}-flutter")));
+    let out = args.out.clone().unwrap_or_else(|| super::default_folder(&format!("{name}-flutter"), args.force));
     let input = args.case.parent().map_or_else(PathBuf::new, Path::to_path_buf);
-    let mut watch = Watch::new(args.verbosity);
     let places = Places { input, out: out.clone() };
-    let found = match &args.forces {
+    let mut forces = args.forces.clone();
+    if args.force {
+        let inside = forces.as_ref().and_then(|file| place_within(file, &out));
+        let kept = run::flutter::set_aside(&case, &places, forces.as_deref());
+        match super::tell_kept(kept, &out, args.verbosity.quiet) {
+            // the file may be one of the earlier results
+            Ok(kept) => forces = kept.zip(inside).map(|(kept, inside)| kept.join(inside)).or(forces),
+            Err(outcome) => return outcome,
+        }
+    }
+    let mut watch = Watch::new(args.verbosity);
+    let found = match &forces {
         Some(file) => run::flutter::again(&case, &places, file, &mut watch),
         None => run::flutter::flutter(&case, &places, &mut watch),
     };
     tell(found, &out, &mut watch, args.verbosity)
+}
+
+/// Where a file lies within a folder, if it does.
+fn place_within(file: &Path, folder: &Path) -> Option<PathBuf> {
+    let (file, folder) = (file.canonicalize().ok()?, folder.canonicalize().ok()?);
+    file.strip_prefix(folder).ok().map(Path::to_path_buf)
 }
 
 /// Goes on with the boundary in the folder `out`.

@@ -18,10 +18,16 @@ pub(crate) fn gaf(args: &arguments::Gaf) -> Outcome {
         Err(outcome) => return outcome,
     };
     let name = args.case.file_stem().map_or_else(|| "gaf".to_owned(), |n| n.to_string_lossy().into_owned());
-    let out = args.out.clone().unwrap_or_else(|| run::fresh_folder(Path::new("runs"), &format!("{name}-gaf")));
+    let out = args.out.clone().unwrap_or_else(|| super::default_folder(&format!("{name}-gaf"), args.force));
     let input = args.case.parent().map_or_else(PathBuf::new, Path::to_path_buf);
+    let places = Places { input, out: out.clone() };
+    if args.force
+        && let Err(outcome) = super::tell_kept(run::gaf::set_aside(&case, &places), &out, args.verbosity.quiet)
+    {
+        return outcome;
+    }
     let mut watch = Watch::new(args.verbosity);
-    let found = run::gaf::gaf(&case, &Places { input, out: out.clone() }, &mut watch);
+    let found = run::gaf::gaf(&case, &places, &mut watch);
     watch.progress().finish();
     let matrices = match found {
         Ok(Some(matrices)) => matrices,
@@ -31,7 +37,9 @@ pub(crate) fn gaf(args: &arguments::Gaf) -> Outcome {
                 true => format!("interrupted; the columns found so far are in `{}`", kept.display()),
                 false => "interrupted before the first column was found".to_owned(),
             };
-            output::note(&format!("{what}: `alula gaf` is not resumed, but begins again, in another folder"));
+            output::note(&format!(
+                "{what}: `alula gaf` is not resumed, but begins again, in another folder or with `--force`"
+            ));
             return Outcome::Interrupted;
         }
         Err(problem) => return super::refuse(&problem),

@@ -1,9 +1,9 @@
 //! One file for each command.
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use alula::case::{Case, read_in, read_regular, text_of};
 use alula::observe::usage::threads_of_environment;
-use alula::run::{Blame, RunError};
+use alula::run::{Blame, RunError, fresh_folder};
 
 use crate::arguments::{Cli, Command, Threads};
 use crate::outcome::Outcome;
@@ -22,6 +22,9 @@ mod resume;
 mod run;
 mod schema;
 mod verify;
+
+/// Folder for results that name none.
+const RUNS: &str = "runs";
 
 /// Does what was typed.
 pub(crate) fn dispatch(cli: Cli) -> Outcome {
@@ -81,6 +84,21 @@ fn load(path: &Path) -> Result<Case, Outcome> {
         output::mistakes(&mistakes);
         Outcome::BadInput
     })
+}
+
+/// Folder of results that name none: the first one of this name if it shall be replaced, or else one that does not exist yet.
+fn default_folder(name: &str, replaced: bool) -> PathBuf {
+    let runs = Path::new(RUNS);
+    if replaced { runs.join(name) } else { fresh_folder(runs, name) }
+}
+
+/// Says where the results that were in the folder `out` are kept now, if there were any, and gives the place.
+fn tell_kept(kept: Result<Option<PathBuf>, RunError>, out: &Path, quiet: bool) -> Result<Option<PathBuf>, Outcome> {
+    let kept = kept.map_err(|problem| refuse(&problem))?;
+    if let Some(kept) = kept.as_ref().filter(|_| !quiet) {
+        output::note(&format!("the earlier results in `{}` are kept in `{}`", out.display(), kept.display()));
+    }
+    Ok(kept)
 }
 
 /// Tells why a case cannot be computed: all reasons, one by one.

@@ -15,26 +15,19 @@ use crate::outcome::Outcome;
 use crate::output;
 use crate::watch::Watch;
 
-/// Folder for runs that name none.
-const RUNS: &str = "runs";
-
 /// Computes a case.
 pub(crate) fn run(args: &arguments::Run) -> Outcome {
     let case = match super::load(&args.case) {
         Ok(case) => case,
         Err(outcome) => return outcome,
     };
-    let out = args.out.clone().unwrap_or_else(|| default_folder(&args.case, args.force));
+    let out = args.out.clone().unwrap_or_else(|| super::default_folder(&name_of(&args.case), args.force));
     let input = args.case.parent().map_or_else(PathBuf::new, Path::to_path_buf);
     let places = Places { input, out: out.clone() };
-    if args.force {
-        match run::set_aside(&case, &places) {
-            Ok(Some(kept)) if !args.verbosity.quiet => {
-                output::note(&format!("the earlier results in `{}` are kept in `{}`", out.display(), kept.display()));
-            }
-            Ok(_) => {}
-            Err(problem) => return super::refuse(&problem),
-        }
+    if args.force
+        && let Err(outcome) = super::tell_kept(run::set_aside(&case, &places), &out, args.verbosity.quiet)
+    {
+        return outcome;
     }
     let mut watch = Watch::new(args.verbosity);
     let ended = match &args.from {
@@ -494,10 +487,4 @@ pub(crate) fn name_of(case: &Path) -> String {
     let own = stem(case).unwrap_or_else(|| "run".into());
     let folder = case.parent().and_then(Path::file_name).map(|s| s.to_string_lossy().into_owned());
     if own == "case" { folder.unwrap_or(own) } else { own }
-}
-
-/// Folder of a run that names none: the first one if it shall be replaced, or else one that does not exist yet.
-fn default_folder(case: &Path, replaced: bool) -> PathBuf {
-    let (runs, name) = (Path::new(RUNS), name_of(case));
-    if replaced { runs.join(name) } else { run::fresh_folder(runs, &name) }
 }

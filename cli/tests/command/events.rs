@@ -109,8 +109,15 @@ fn matrices_are_the_last_event_of_gaf() {
         let again = alula(folder.path(), &[what, "case.toml", "--out", "out"]);
         let told = String::from_utf8_lossy(&again.stderr).into_owned();
         assert_eq!(again.status.code(), Some(2), "{told}");
-        assert!(told.contains("`out` holds earlier results") && !told.contains("--force"), "{told}");
+        assert!(told.contains("`out` holds earlier results") && told.contains("--force"), "{told}");
     }
+    let replaced = alula(folder.path(), &["cloud", "case.toml", "--out", "out", "--force"]);
+    let told = String::from_utf8_lossy(&replaced.stderr).into_owned();
+    assert!(replaced.status.success() && told.contains("kept in `out.replaced`"), "{told}");
+    assert!(folder.path().join("out.replaced/gaf.csv").is_file() && !folder.path().join("out/gaf.csv").exists());
+    let out = folder.path().join("out");
+    std::fs::remove_dir_all(&out).unwrap();
+    std::fs::rename(folder.path().join("out.replaced"), &out).unwrap();
     let resumed = alula(folder.path(), &["resume", "out"]);
     assert!(String::from_utf8_lossy(&resumed.stderr).contains("`alula gaf`, which is not resumed"));
 }

@@ -51,6 +51,20 @@ fn a_flutter_boundary_that_is_interrupted_at_its_forces_goes_on() {
     let links = page.split("href=\"./").skip(1).map(|rest| rest.split('"').next().unwrap());
     let gone: Vec<&str> = links.filter(|name| !folder.path().join("out").join(name).exists()).collect();
     assert!(gone.is_empty(), "the page links files that are not there: {gone:?}");
+    // what cannot begin replaces nothing; what can is kept under another name
+    let replace = |case: &str| {
+        std::fs::write(folder.path().join("case.toml"), format!("{SECTION}{case}")).unwrap();
+        let words = ["flutter", "case.toml", "--out", "out", "--force", "--forces", "out/flutter.json"];
+        Command::new(env!("CARGO_BIN_EXE_alula")).args(words).current_dir(folder.path()).output().unwrap()
+    };
+    let refused = replace(&FLUTTER.replace("[flutter]", "[flutter]\ntrim = true"));
+    assert!(refused.status.code() == Some(2) && folder.path().join("out/flutter.json").is_file());
+    let replaced = replace(FLUTTER);
+    let told = String::from_utf8_lossy(&replaced.stderr).into_owned();
+    assert!(told.contains("kept in `out.replaced`") && replaced.status.code() != Some(2), "{told}");
+    assert!(
+        folder.path().join("out.replaced/flutter.json").is_file() && folder.path().join("out/flutter.json").is_file()
+    );
 }
 
 #[test]
