@@ -277,6 +277,10 @@ impl<const D: usize> System for Coupled<D> {
         self.fluid.largest_change(&u[gas.clone()], &du[gas]).max(self.largest_move(du))
     }
 
+    fn pressure_ratio(&self, u: &[f64]) -> f64 {
+        self.fluid.pressure_ratio(&u[self.unknowns_of(Name::Gas)])
+    }
+
     fn shorten(&self, u: &[f64], du: &mut [f64], largest: f64) {
         let gas = self.unknowns_of(Name::Gas);
         self.fluid.shorten(&u[gas.clone()], &mut du[gas.clone()], largest);

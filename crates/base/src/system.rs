@@ -187,6 +187,10 @@ pub trait System: Sync {
             sweep_slots(du, |_, du| *du *= largest / change);
         }
     }
+    /// Largest pressure of a gas over its smallest in the state `u`, from which follows how strong shocks can be; infinite where unknown.
+    fn pressure_ratio(&self, _u: &[f64]) -> f64 {
+        f64::INFINITY
+    }
     /// Refuses a state that is not physical.
     fn check(&self, frame: &Self::Frame, u: &[f64]) -> Result<(), Fault>;
     /// Refuses a frame whose particles motion has brought where the cloud no longer serves.

@@ -30,7 +30,9 @@ pub(super) fn tell(columns: &mut [Column], others: &[(f64, Vec<Column>)]) {
     let usual: Vec<f64> = (0..rows)
         .map(|row| {
             let parts = changes.iter().zip(columns.iter());
-            median(parts.filter_map(|(change, c)| Some(change.as_ref()?[row] / size(c).max(f64::MIN_POSITIVE))).collect())
+            median(
+                parts.filter_map(|(change, c)| Some(change.as_ref()?[row] / size(c).max(f64::MIN_POSITIVE))).collect(),
+            )
         })
         .collect();
     for (column, change) in columns.iter_mut().zip(&changes) {

@@ -5,7 +5,7 @@ use super::discretisation::CloudMotion;
 use super::fluid::{Fluid, Work};
 use super::frame::{Frame, LagrangianStep};
 use crate::math::parallel::sweep_rows;
-use crate::math::reduce::{first, maximum};
+use crate::math::reduce::{first, maximum, minimum};
 use crate::physics::Conserved;
 use crate::system::{Fault, Field as Unknowns, Instant, Rate, System};
 
@@ -88,6 +88,12 @@ impl<const D: usize> System for Fluid<D> {
     fn largest_change(&self, u: &[f64], du: &[f64]) -> f64 {
         let change = |i: usize| self.change(&Conserved::of_row(u, i), &Conserved::of_row(du, i), 1.0);
         maximum(self.discretisation.cloud.n_fluid, change)
+    }
+
+    fn pressure_ratio(&self, u: &[f64]) -> f64 {
+        let (n, pressure) =
+            (self.discretisation.cloud.n_fluid, |i: usize| self.gas.primitive(&Conserved::<D>::of_row(u, i)).pressure);
+        maximum(n, pressure) / minimum(n, pressure)
     }
 
     fn shorten(&self, u: &[f64], du: &mut [f64], largest: f64) {

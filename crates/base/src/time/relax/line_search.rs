@@ -15,8 +15,18 @@ const START_JUMP: f64 = 4.0;
 /// Largest ratio of residuals of successive Newton steps within a step in time.
 const NEWTON_JUMP: f64 = 1.1;
 /// The same on the way to a steady flow. A shock that enters the next row of particles makes the residual several times as large before it
-/// falls: steps that may not pass over that are cut short at every row. Strong shocks do not come back from much larger ones.
-const SHOCK_JUMP: f64 = 2.0;
+/// falls: steps that may not pass over that are cut short at every row.
+const SHOCK_JUMP: f64 = 10.0;
+/// The same around strong shocks: a bow shock at Mach 10 does not come back from larger ones.
+const STRONG_SHOCK_JUMP: f64 = 2.0;
+/// Least growth of the Courant number after a whole step towards a steady flow, and around strong shocks: where it waits for the
+/// residual to fall, shocks travel as slowly as in time.
+const LEAST_GROWTH: f64 = 3.0;
+const STRONG_SHOCK_GROWTH: f64 = 1.0;
+/// Largest over smallest pressure above which shocks may be strong: 3 to 6 around transonic sections, above 100 behind a bow shock at Mach 3.
+const STRONG_SHOCKS: f64 = 10.0;
+/// Growth of the Courant number after a whole Newton step within a step in time, at least.
+const LEAST_GROWTH_IN_TIME: f64 = 0.5;
 /// Step lengths that are tried before the Courant number is lowered: 1, 1/2, 1/4.
 const SHORTER_STEPS: i32 = 3;
 /// Largest relative change of density and pressure in one step that is shortened as a whole.
@@ -27,6 +37,15 @@ const LARGEST_ROW_CHANGE: f64 = 0.5;
 const MILD_CHANGE: f64 = 1.0;
 /// Fall of the residual in an iteration of a step in time with which the preconditioner goes on to serve.
 const GOOD_FALL: f64 = 2.0;
+
+/// How daring a line search is.
+#[derive(Clone, Copy)]
+struct Search {
+    /// Largest ratio of the residual after a step to that before.
+    jump: f64,
+    /// Least growth of the Courant number after a whole Newton step.
+    growth: f64,
+}
 
 impl<S: Implicit> Relax<'_, S> {
     /// Part of the step that changes no density and no pressure by too much. On the way to a steady flow mild steps are shortened row by row
@@ -45,14 +64,20 @@ impl<S: Implicit> Relax<'_, S> {
     /// Takes the step times `fraction`, or a shorter one when Newton's method overshoots.
     pub(super) fn search(&mut self, fraction: f64) -> bool {
         if !self.phase.newton {
-            return self.accept(fraction, START_JUMP);
+            return self.accept(fraction, Search { jump: START_JUMP, growth: 1.0 });
         }
-        let jump = if self.time.is_none() { SHOCK_JUMP } else { NEWTON_JUMP };
-        (0..SHORTER_STEPS).any(|k| self.accept(fraction * 0.5f64.powi(k), jump))
+        let search = if self.time.is_some() {
+            Search { jump: NEWTON_JUMP, growth: LEAST_GROWTH_IN_TIME }
+        } else if self.system.pressure_ratio(&self.u) > STRONG_SHOCKS {
+            Search { jump: STRONG_SHOCK_JUMP, growth: STRONG_SHOCK_GROWTH }
+        } else {
+            Search { jump: SHOCK_JUMP, growth: LEAST_GROWTH }
+        };
+        (0..SHORTER_STEPS).any(|k| self.accept(fraction * 0.5f64.powi(k), search))
     }
 
-    /// Takes the step times `fraction` if the new residual is at most `jump` times the old one; sets the next Courant number.
-    fn accept(&mut self, fraction: f64, jump: f64) -> bool {
+    /// Takes the step times `fraction` if the new residual is at most `search.jump` times the old one; sets the next Courant number.
+    fn accept(&mut self, fraction: f64, search: Search) -> bool {
         let (u, step) = (&self.u, &self.step);
         sweep(&mut self.trial, |k| u[k] + fraction * step[k]);
         if self.system.check(&self.frame, &self.trial).is_err() {
@@ -68,7 +93,7 @@ impl<S: Implicit> Relax<'_, S> {
             sweep_rows(&mut self.trial_residual, 1, |k, r| r[0] -= change(k));
         }
         let norm = self.norm_of(&self.trial_residual);
-        if !norm.is_finite() || norm > jump * self.norm {
+        if !norm.is_finite() || norm > search.jump * self.norm {
             self.beside = beside.or(self.beside.take());
             return false;
         }
@@ -79,7 +104,8 @@ impl<S: Implicit> Relax<'_, S> {
         std::mem::swap(&mut self.residual, &mut self.trial_residual);
         let steady_newton = self.phase.newton && self.time.is_none();
         let trusted = steady_newton && fraction == 1.0 && self.model_error() < TRUSTED * self.norm;
-        self.cfl = self.next_cfl(fraction, self.norm / norm.max(f64::MIN_POSITIVE), trusted);
+        let least = if trusted { search.growth.max(TRUSTED_GROWTH) } else { search.growth };
+        self.cfl = self.next_cfl(fraction, self.norm / norm.max(f64::MIN_POSITIVE), least);
         if !(self.norm > GOOD_FALL * norm) {
             self.give_up_preconditioner();
         }
@@ -109,14 +135,12 @@ impl<S: Implicit> Relax<'_, S> {
         self.norm_of(&self.trial)
     }
 
-    /// The Courant number after an accepted step that divided the residual by `ratio`; `trusted` where the linear system
-    /// foretold the residual.
-    fn next_cfl(&self, fraction: f64, ratio: f64, trusted: bool) -> f64 {
+    /// The Courant number after an accepted step that divided the residual by `ratio`; it grows at least by `least` after a whole step of
+    /// Newton's method.
+    fn next_cfl(&self, fraction: f64, ratio: f64, least: f64) -> f64 {
         let growth = self.control.growth;
-        let least = if self.time.is_none() { 1.0 } else { 0.5 };
         let factor = match (self.phase.newton, fraction == 1.0) {
-            (true, true) if trusted => ratio.clamp(TRUSTED_GROWTH, growth),
-            (true, true) => ratio.clamp(least, growth),
+            (true, true) => ratio.clamp(least, growth.max(least)),
             (true, false) => ratio.clamp(0.5, 1.0),
             (false, true) => {
                 if ratio < 1.0 {
