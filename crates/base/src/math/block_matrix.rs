@@ -370,19 +370,7 @@ impl BlockMatrix {
 
     fn residual_of<const N: usize>(&self, s: &mut Sweeps) {
         let (x, old) = (&s.x, &s.old);
-        sweep_parts(&self.parts, N, &mut s.side, &|k, out| {
-            let part = self.parts[k].clone();
-            for (i, row) in part.clone().zip(out.chunks_exact_mut(N)) {
-                let (below, inside, above) = self.split_row(i);
-                let (middle, column) = (self.middle(i), self.columns_by_entry(i));
-                let mut sum = [0.0; LANES];
-                for e in below.chain(inside.start..middle).chain(above) {
-                    let (new, old) = (load::<N>(x, column(e)), load::<N>(old, column(e)));
-                    subtract::<N>(self.off_diagonal::<N>(e), &array(|c| new[c] - old[c]), &mut sum);
-                }
-                store(&leading::<N>(&sum), row);
-            }
-        });
+        sweep_parts(&self.parts, N, &mut s.side, &|k, out| residual_part::<N>(self, &self.parts[k], (x, old), out));
     }
 
     /// A x of the matrix as it was assembled.
@@ -409,18 +397,7 @@ impl BlockMatrix {
 
     fn restart_of<const N: usize>(&self, s: &mut Sweeps) {
         let x = &s.x;
-        sweep_parts(&self.parts, N, &mut s.side, &|k, out| {
-            let part = self.parts[k].clone();
-            for (i, row) in part.clone().zip(out.chunks_exact_mut(N)) {
-                let (_, inside, _) = self.split_row(i);
-                let (middle, column) = (self.middle(i), self.columns_by_entry(i));
-                let mut sum = [0.0; LANES];
-                for e in middle..inside.end {
-                    subtract::<N>(self.off_diagonal::<N>(e), &load::<N>(x, column(e)), &mut sum);
-                }
-                store(&leading::<N>(&sum), row);
-            }
-        });
+        sweep_parts(&self.parts, N, &mut s.side, &|k, out| restart_part::<N>(self, &self.parts[k], x, out));
     }
 
     /// The pattern of the matrix that couples groups of rows.
@@ -514,6 +491,42 @@ fn relax_part<const N: usize>(
     for k in 0..part.len() {
         let i = if forward { part.start + k } else { part.end - 1 - k };
         matrix.relax_row::<N>(i, part, (b, old), forward, (x, side));
+    }
+}
+
+/// What is left of the right-hand side in the rows of one part, see [`BlockMatrix::residual`].
+#[multiversion(targets("x86_64+avx512f+avx512vl+avx512dq", "x86_64+avx2"))]
+#[allow(unsafe_code, reason = "the attribute calls the version that the processor has just been asked for")]
+fn residual_part<const N: usize>(
+    matrix: &BlockMatrix,
+    part: &Range<usize>,
+    (x, old): (&[f32], &[f32]),
+    out: &mut [f32],
+) {
+    for (i, row) in part.clone().zip(out.chunks_exact_mut(N)) {
+        let (below, inside, above) = matrix.split_row(i);
+        let (middle, column) = (matrix.middle(i), matrix.columns_by_entry(i));
+        let mut sum = [0.0; LANES];
+        for e in below.chain(inside.start..middle).chain(above) {
+            let (new, old) = (load::<N>(x, column(e)), load::<N>(old, column(e)));
+            subtract::<N>(matrix.off_diagonal::<N>(e), &array(|c| new[c] - old[c]), &mut sum);
+        }
+        store(&leading::<N>(&sum), row);
+    }
+}
+
+/// The sums that a forward sweep over one part starts from.
+#[multiversion(targets("x86_64+avx512f+avx512vl+avx512dq", "x86_64+avx2"))]
+#[allow(unsafe_code, reason = "the attribute calls the version that the processor has just been asked for")]
+fn restart_part<const N: usize>(matrix: &BlockMatrix, part: &Range<usize>, x: &[f32], out: &mut [f32]) {
+    for (i, row) in part.clone().zip(out.chunks_exact_mut(N)) {
+        let (_, inside, _) = matrix.split_row(i);
+        let (middle, column) = (matrix.middle(i), matrix.columns_by_entry(i));
+        let mut sum = [0.0; LANES];
+        for e in middle..inside.end {
+            subtract::<N>(matrix.off_diagonal::<N>(e), &load::<N>(x, column(e)), &mut sum);
+        }
+        store(&leading::<N>(&sum), row);
     }
 }
 
