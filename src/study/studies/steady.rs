@@ -21,10 +21,10 @@ use crate::system::Implicit;
 use crate::time::relax::Relax;
 use crate::time::{Integrator, Memory, Standing};
 
-/// Orders of magnitude that relaxations before another one are solved to: the next cloud begins with a residual of a hundredth.
-const EARLY_ORDERS: f64 = 3.0;
-/// Those on a cloud of a family before the last at which loads that rest are taken as they are.
-const RESTING_ORDERS: f64 = 4.5;
+/// Orders of magnitude that relaxations before another one are solved to, and where shocks are to be expected: the next cloud moves them anyway.
+/// What is left in smooth flows takes as many iterations on the next cloud, each dearer.
+const EARLY_ORDERS: f64 = 4.5;
+const EARLY_ORDERS_OF_SHOCKS: f64 = 3.0;
 /// Orders beyond those of a single cloud, on the clouds of a family: what loads change by from one to the next must not be what
 /// is left of their residual.
 const SETTLING: f64 = 1.5;
@@ -66,6 +66,7 @@ pub(crate) fn relax<S: HasGas<D>, const D: usize>(
     let again = turn.next().is_some_and(|stage| stage.task == Task::Relax);
     let orders = match asked {
         Some(_) => steady.orders + SETTLING,
+        None if again && spacing::begins_near(&log.case) => steady.orders.min(EARLY_ORDERS_OF_SHOCKS),
         None if again => steady.orders.min(EARLY_ORDERS),
         None => steady.orders,
     };
@@ -145,7 +146,7 @@ fn watched<S: HasGas<D>, const D: usize>(
     let hurried = hurried || (turn.stage().point.is_some() && !log.record.polar.from_rest);
     let (mut limit, mut resting, mut swinging) =
         (Limit { iterations }, Resting { patience: PATIENCE }, Swinging { patience });
-    let least = if turn.stage().factor > 1.0 && !turn.last() { RESTING_ORDERS } else { orders - SETTLING };
+    let least = if turn.stage().factor > 1.0 && !turn.last() { EARLY_ORDERS } else { orders - SETTLING };
     let (mut told, mut flat) = (Told, spacing::asked(&log.case).map(|asked| flat(&asked, least)));
     let mut all: Vec<&mut dyn Observer<S, Log<'_>>> = vec![&mut progress, &mut limit, &mut told];
     all.push(if hurried { &mut resting } else { &mut swinging });

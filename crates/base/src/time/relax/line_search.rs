@@ -19,8 +19,8 @@ const NEWTON_JUMP: f64 = 1.1;
 const SHOCK_JUMP: f64 = 10.0;
 /// The same around strong shocks: a bow shock at Mach 10 does not come back from larger ones.
 const STRONG_SHOCK_JUMP: f64 = 2.0;
-/// Least growth of the Courant number after a whole step towards a steady flow, and around strong shocks: where it waits for the
-/// residual to fall, shocks travel as slowly as in time.
+/// Least growth of the Courant number after a whole step towards a steady flow while the residual is above its smallest, and around strong
+/// shocks: where it waits for the residual to fall, shocks travel as slowly as in time.
 const LEAST_GROWTH: f64 = 3.0;
 const STRONG_SHOCK_GROWTH: f64 = 1.0;
 /// Largest over smallest pressure above which shocks may be strong: 3 to 6 around transonic sections, above 100 behind a bow shock at Mach 3.
@@ -104,7 +104,9 @@ impl<S: Implicit> Relax<'_, S> {
         std::mem::swap(&mut self.residual, &mut self.trial_residual);
         let steady_newton = self.phase.newton && self.time.is_none();
         let trusted = steady_newton && fraction == 1.0 && self.model_error() < TRUSTED * self.norm;
-        let least = if trusted { search.growth.max(TRUSTED_GROWTH) } else { search.growth };
+        let wanders = steady_newton && norm > self.phase.best;
+        let growth = if wanders { search.growth } else { search.growth.min(1.0) };
+        let least = if trusted { growth.max(TRUSTED_GROWTH) } else { growth };
         self.cfl = self.next_cfl(fraction, self.norm / norm.max(f64::MIN_POSITIVE), least);
         if !(self.norm > GOOD_FALL * norm) {
             self.give_up_preconditioner();
