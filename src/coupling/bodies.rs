@@ -2,9 +2,9 @@
 use std::ops::Range;
 use std::sync::Arc;
 
+use crate::cloud::Cloud;
 use crate::math::{Vector, dense::Factors};
 use crate::motion::{BodyMotion, Freedom, Hinge, ModeShape, Role};
-use crate::scheme::View;
 use crate::structure::{Energy, Floating, Model, Placement, Structure};
 use crate::system::Fault;
 
@@ -108,18 +108,18 @@ impl<const D: usize> Attached<D> {
         self.structure.placement(&self.own(u)[0])
     }
 
-    /// Adds to `load`, those of its coordinates, the generalised forces of the gas on the interface particles `walls` of its body.
+    /// Adds to `load`, those of its coordinates, the generalised forces of the forces `force` on the interface particles `walls` of its body
+    /// on the cloud `before` any motion.
     pub(super) fn add_loads(
         &self,
-        view: &View<'_, D>,
-        placement: &Placement<D>,
+        (before, placement): (&Cloud<D>, &Placement<D>),
+        force: &impl Fn(usize) -> Vector<D>,
         walls: Range<usize>,
         load: &mut [f64],
     ) {
-        let before = view.reference();
         for w in walls.filter(|w| usize::from(before.interface[*w].body) == self.body) {
             let bends = self.bends.get(w).map_or(&[][..], Vec::as_slice);
-            placement.add_work(&before.x[before.n_fluid + w], bends, &view.wall_force(w), load);
+            placement.add_work(&before.x[before.n_fluid + w], bends, &force(w), load);
         }
     }
 
@@ -139,6 +139,28 @@ impl<const D: usize> Attached<D> {
         let accelerations = self.structure.accelerations(0.0, [&q, &still], load);
         for (k, pair) in change.chunks_exact_mut(2).enumerate() {
             (pair[0], pair[1]) = (accelerations[k] / omega, -omega * v[k]);
+        }
+    }
+
+    /// How [`Self::rates`], or in steady flow [`Self::towards_rest`], changes where the unknowns `u` change by `v` and the generalised forces
+    /// `load` by `change`.
+    pub(super) fn rates_change(
+        &self,
+        (t, steady): (f64, Option<f64>),
+        [u, v]: [&[f64]; 2],
+        [load, change]: [&[f64]; 2],
+        out: &mut [f64],
+    ) {
+        let ([q, rate], [dq, dv], n) = (split(u), split(v), self.structure.len());
+        let still = vec![0.0; n];
+        let at = self.structure.linearise(t, [&q, if steady.is_some() { &still } else { &rate }], load);
+        for (i, pair) in out.chunks_exact_mut(2).enumerate() {
+            let times = |by: &[f64], x: &[f64]| by[i * n..][..n].iter().zip(x).map(|(a, b)| a * b).sum::<f64>();
+            let pushed = times(&at.by_coordinate, &dq) + times(&at.by_load, change);
+            (pair[0], pair[1]) = match steady {
+                Some(omega) => (pushed / omega, -omega * dv[i]),
+                None => (dv[i], pushed + times(&at.by_rate, &dv)),
+            };
         }
     }
 

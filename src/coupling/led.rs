@@ -89,6 +89,12 @@ impl<const D: usize> System for Led<'_, D> {
         self.lead_rates(frame, u, du);
     }
 
+    fn jvp(&self, frame: &Frame<D>, at: [&[f64]; 2], work: &mut Work<D>, out: &mut [f64]) {
+        self.coupled.jvp(frame, at, work, out);
+        let own = self.own();
+        out[own.clone()].iter_mut().zip(&at[1][own]).for_each(|(o, v)| *o = -self.coupled.fastest * v);
+    }
+
     fn rates(&self, frame: &Frame<D>, u: &[f64], work: &mut Work<D>, rate: &mut [f64]) {
         self.coupled.rates(frame, u, work, rate);
     }

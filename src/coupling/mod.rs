@@ -12,6 +12,7 @@
 //!
 //! Bodies made of particles ([`solids`]) add the displacements and velocities of these, in pairs, as coordinates of their own.
 mod bodies;
+mod derivative;
 pub mod led;
 mod march;
 mod preconditioner;
@@ -22,6 +23,7 @@ pub use bodies::{Attached, body_motion};
 pub use march::March;
 pub use preconditioner::CoupledPreconditioner;
 
+use crate::math::Vector;
 use crate::math::parallel::fill;
 use crate::math::reduce::{largest_size, sum, sum_each};
 use crate::scheme::{self, Exchange, Fluid, HasGas, View};
@@ -139,11 +141,21 @@ impl<const D: usize> Coupled<D> {
     /// Sets `work.load` to the generalised forces of the walls whose states are in `work`, for coordinates with the unknowns `u` of the structures.
     fn loads(&self, frame: &scheme::Frame<D>, u: &[f64], work: &mut Work<D>) {
         let Work { gas, load, chunks, .. } = work;
-        let view = View::new(&self.fluid, frame, gas);
+        self.loads_of(&|w| self.fluid.wall_force((frame, gas), w), u, (load, chunks));
+    }
+
+    /// Sets `load` to the generalised forces of the forces `force` on the walls.
+    fn loads_of(
+        &self,
+        force: &(impl Fn(usize) -> Vector<D> + Sync),
+        u: &[f64],
+        (load, chunks): (&mut [f64], &mut Vec<f64>),
+    ) {
+        let before = &self.fluid.discretisation.cloud;
         let placements: Vec<_> = self.bodies.iter().map(|body| body.placement(u)).collect();
-        sum_each(view.reference().interface.len(), load, chunks, |walls, load| {
+        sum_each(before.interface.len(), load, chunks, |walls, load| {
             for (body, placement) in self.bodies.iter().zip(&placements) {
-                body.add_loads(&view, placement, walls.clone(), &mut load[body.range()]);
+                body.add_loads((before, placement), force, walls.clone(), &mut load[body.range()]);
             }
         });
     }
@@ -155,6 +167,11 @@ impl<const D: usize> Coupled<D> {
             (_, true) => Pace::Steady,
             _ => Pace::Marching,
         }
+    }
+
+    /// The moment at which rates of bodies made of particles are sought in a frame.
+    fn moving<'a>(&self, frame: &'a Frame<D>) -> Moving<'a> {
+        Moving { time: frame.gas.time, step: frame.step, jets: &frame.gas.jets, pace: self.pace(frame) }
     }
 
     /// d/dt of the unknowns of the structures in the state `u` under the walls whose states are in `work`.
@@ -172,8 +189,8 @@ impl<const D: usize> Coupled<D> {
             }
         }
         if let (Some(on), Some(storage)) = (&self.solids, &mut work.solids) {
-            on.load(&View::new(&self.fluid, &frame.gas, &work.gas), storage);
-            let at = Moving { time: frame.gas.time, step: frame.step, jets: &frame.gas.jets, pace: self.pace(frame) };
+            on.load(&|w| self.fluid.wall_force((&frame.gas, &work.gas), w), &mut storage.load);
+            let at = self.moving(frame);
             let (solid, remembered) = (self.unknowns_of(Name::Solid), self.unknowns_of(Name::History));
             if !remembered.is_empty() {
                 storage.history.copy_from_slice(&u[remembered.clone()]);
@@ -260,6 +277,12 @@ impl<const D: usize> System for Coupled<D> {
         let gas = self.unknowns_of(Name::Gas);
         self.fluid.rhs(&frame.gas, &u[gas.clone()], &mut work.gas, &mut du[gas]);
         self.structures(frame, u, work, du);
+    }
+
+    fn jvp(&self, frame: &Frame<D>, at: [&[f64]; 2], work: &mut Work<D>, out: &mut [f64]) {
+        let gas = self.unknowns_of(Name::Gas);
+        self.fluid.jvp(&frame.gas, at.map(|u| &u[gas.clone()]), &mut work.gas, &mut out[gas]);
+        self.structures_change(frame, at, work, out);
     }
 
     fn rates(&self, frame: &Frame<D>, u: &[f64], work: &mut Work<D>, rate: &mut [f64]) {
@@ -378,7 +401,7 @@ impl<const D: usize> HasGas<D> for Coupled<D> {
             all.dissipation += energy.dissipation;
         }
         if let (Some(on), Some(work)) = (&self.solids, &mut work.solids) {
-            on.load(&view, work);
+            on.load(&|w| view.wall_force(w), &mut work.load);
             on.solids.split(solid, work);
             if !self.unknowns_of(Name::History).is_empty() {
                 work.history.copy_from_slice(remembered);

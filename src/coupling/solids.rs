@@ -20,7 +20,7 @@ use crate::math::parallel::sweep_slots;
 use crate::math::reduce::sum;
 use crate::math::sparse::Factors;
 use crate::motion::{BodyMotion, RigidPose, SurfaceNet};
-use crate::scheme::{Fluid, View};
+use crate::scheme::Fluid;
 use crate::solid::Structure;
 use crate::solid::forces::{Energy, State, Work as SolidWork};
 use crate::system::{Fault, Mechanical, Moment};
@@ -510,11 +510,11 @@ impl<const D: usize> OnCloud<D> {
         Self { solids, walls, surface }
     }
 
-    /// Forces of the gas, as `view` has it, on the particles.
-    pub(super) fn load(&self, view: &View<'_, D>, work: &mut Work<D>) {
-        work.load.fill(Vector::ZERO);
+    /// Sets `load` to the forces on the particles where the gas exerts the forces `force` on interface particles.
+    pub(super) fn load(&self, force: &dyn Fn(usize) -> Vector<D>, load: &mut [Vector<D>]) {
+        load.fill(Vector::ZERO);
         for wall in &self.walls {
-            wall.push(&view.wall_force(wall.wall), &mut work.load);
+            wall.push(&force(wall.wall), load);
         }
     }
 

@@ -5,8 +5,10 @@ use std::path::Path;
 use alula::case::{Case, read};
 use alula::math::Vector;
 use alula::math::dual::Dual;
+use alula::math::reduce::norm;
 use alula::physics::Primitive;
 use alula::scheme::{FarField, Fluid};
+use alula::system::{Instant, Name, Placed, System, placed};
 use alula::time::ordinary::Ordinary;
 
 /// Uniform stream on a jittered cloud with two levels, plane or solid.
@@ -95,4 +97,39 @@ impl<const D: usize> FarField<D> for Uniform<D> {
     fn pressure(&self) -> f64 {
         self.0.pressure
     }
+}
+
+/// Errors of products with dR/dU, over the size of the product, field by field: against fourth-order differences of the residual with the
+/// frame where `place` puts it. `v` is the direction, `u` the state.
+pub(crate) fn product_errors<S: System>(
+    system: &S,
+    [u, v]: [&[f64]; 2],
+    place: &dyn Fn(&[f64], &mut S::Frame),
+) -> Vec<(Name, f64)> {
+    // short, since upwind choices and limiters have kinks
+    const STEP: f64 = 1e-7;
+    let placed_by = |u: &[f64], frame: &mut S::Frame| place(&system.placing().values(u), frame);
+    let mut frame = system.frame(&Instant::still(0.0).with(&system.placing().values(u)), u);
+    placed_by(u, &mut frame);
+    let (mut work, mut found) = (system.work(), vec![0.0; u.len()]);
+    system.jvp_with_frame((&frame, place), [u, v], &mut work, &mut found);
+    let mut exact = vec![0.0; u.len()];
+    for (part, weight) in [(1.0, 8.0), (-1.0, -8.0), (2.0, -1.0), (-2.0, 1.0)] {
+        let moved: Vec<f64> = u.iter().zip(v).map(|(u, v)| u + part * STEP * v).collect();
+        let mut there = vec![0.0; u.len()];
+        placed_by(&moved, &mut frame);
+        system.rhs(&frame, &moved, &mut work, &mut there);
+        exact.iter_mut().zip(&there).for_each(|(e, r)| *e += weight * r / (12.0 * STEP));
+    }
+    let error = |at: Placed| {
+        let [found, exact] = [&found[at.unknowns.clone()], &exact[at.unknowns.clone()]];
+        let wrong: Vec<f64> = found.iter().zip(exact).map(|(f, e)| f - e).collect();
+        (at.field.name, norm(&wrong) / norm(exact).max(f64::MIN_POSITIVE))
+    };
+    placed(system.fields()).map(error).collect()
+}
+
+/// A direction that reaches every unknown of the state `u`.
+pub(crate) fn direction(u: &[f64]) -> Vec<f64> {
+    u.iter().enumerate().map(|(k, u)| (1.7 * k as f64).sin() * (0.1 + u.abs())).collect()
 }

@@ -2,19 +2,22 @@
 
 use std::sync::Arc;
 
-use crate::common::solver;
+use crate::common::{direction, product_errors, solver};
+use alula::coupling::led::Led;
 use alula::coupling::{Attached, Coupled, body_motion};
 use alula::math::fourier::{Instances, Series};
 use alula::math::multilevel::Cycle;
 use alula::scheme::motion_blending::MotionBlending;
 use alula::scheme::{CloudMotion, DeformingSurface, Fluid, HasGas};
+use alula::structure::limit_cycle::Periodic;
 use alula::structure::{Coordinate, ForceHistory, InertiaLaw, Model, PlanarBody, Spring, Structure};
-use alula::system::{Instant, Name, System};
+use alula::system::{Instant, Name, System, Term};
 use alula::time::control::Control;
 use alula::time::dual::{Dual, Plan};
 use alula::time::harmonic::HarmonicBalance;
 use alula::time::relax::Relax;
 use alula::time::{Integrator, Memory, Past, Standing};
+use num_complex::Complex64;
 
 const CONTROL: Control =
     Control { cfl: 1e3, tolerance: 1e-2, cycle: Cycle { sweeps: 2, visits: 1, levels: 10 }, ..Control::newton(2) };
@@ -175,4 +178,80 @@ fn a_forced_piston_in_a_closed_tube_swings_as_acoustics_have_it() {
     println!("{:?} of {exact}, {} iterations, {} linear", series.coefficients(), relax.iteration, relax.linear);
     assert!((series.coefficients()[1] / exact - 1.0).abs() < 0.01, "{:?} of {exact}", series.coefficients());
     assert!(series.coefficients()[2].abs() < 0.01 * exact.abs());
+}
+
+/// A section on springs, in plunge and pitch, in an uneven flow.
+fn sprung_section(keys: &str, rigid: bool) -> (Coupled<2>, Vec<f64>) {
+    let case = format!(
+        "[flow]\nmach = 0.6\nalpha = \"2 deg\"\n{keys}\n[[body]]\nnaca = \"0012\"\n[cloud]\nspacing = 0.1\n\
+         domain = {{ min = [-3.2, -3.2], max = [3.2, 3.2] }}\n[scheme]\nlimiter = \"none\"\nflux = \"rusanov\"\n"
+    );
+    let coordinates = vec![coordinate("plunge", 0.3, 0.05), coordinate("pitch", 0.2, 0.1)];
+    let structure = Structure::new(planar(2.0, 0.3, 0.5, [0.3, 0.0]), coordinates).unwrap();
+    let (system, mut u) = coupled(&case, structure, rigid);
+    let gas = system.unknowns_of(Name::Gas);
+    for (row, x) in u[gas].chunks_mut(4).zip(&system.fluid().discretisation.cloud.x) {
+        let wave = 0.1 * (3.0 * x[0]).sin() * (2.0 * x[1]).cos();
+        row.iter_mut().zip([1.0, -1.0, 1.0, 0.5]).for_each(|(u, part)| *u *= 1.0 + part * wave);
+    }
+    for (k, q) in u[system.unknowns_of(Name::Structure)].iter_mut().enumerate() {
+        *q += 0.03 * (k as f64 + 1.0);
+    }
+    (system, u)
+}
+
+/// Largest errors of products with dR/dU in a step of a march, in gas and structure, where coordinates change and where they stay.
+fn errors_of_step(keys: &str, rigid: bool) -> [[f64; 2]; 2] {
+    let (system, u) = sprung_section(keys, rigid);
+    let old = [0.02, 0.0, 0.07, 0.0];
+    let place = |q: &[f64], frame: &mut _| {
+        let terms = [(5.0, 0.2, q), (-5.0, 0.0, &old)];
+        let terms = terms.map(|(coefficient, time, coordinates)| Term { coefficient, time, coordinates });
+        system.place(&Instant::formula(0.2, &terms).with(q), frame);
+    };
+    [true, false].map(|moves| {
+        let mut v = direction(&u);
+        if !moves {
+            v[system.unknowns_of(Name::Structure)].fill(0.0);
+        }
+        let all = product_errors(&system, [&u, &v], &place);
+        println!("{keys} rigid {rigid} moves {moves} {all:?}");
+        [all[0].1, all[1].1]
+    })
+}
+
+#[test]
+fn products_with_a_section_on_springs_are_those_of_the_residual() {
+    for keys in ["", "reynolds = 1e3"] {
+        for rigid in [true, false] {
+            for found in errors_of_step(keys, rigid).as_flattened() {
+                assert!(*found < 1e-6, "{keys} {rigid} {found:.1e}");
+            }
+        }
+    }
+    // on the way to rest
+    let (system, u) = sprung_section("", true);
+    let place = |q: &[f64], frame: &mut _| system.place(&Instant::still(0.0).with(q), frame);
+    for (name, found) in product_errors(&system, [&u, &direction(&u)], &place) {
+        assert!(found < 1e-6, "{name:?} {found:.1e}");
+    }
+}
+
+#[test]
+fn products_of_a_period_are_those_of_the_residual() {
+    let (system, u) = sprung_section("", true);
+    let motion = Periodic { mean: vec![0.0; 2], harmonics: vec![vec![Complex64::new(0.05, 0.02); 2]] };
+    let led = Led::new(&system, &u, &motion, 0.4);
+    errors_of_period(&HarmonicBalance::new(&system, Instances::of_harmonics(1), 0.4, 2.0), &u);
+    errors_of_period(&HarmonicBalance::new(&led, Instances::of_harmonics(1), 0.4, 1.0), &u);
+}
+
+fn errors_of_period<S: System>(balance: &HarmonicBalance<'_, S>, u: &[f64]) {
+    let mut all = balance.copies(u);
+    all.iter_mut().enumerate().for_each(|(k, u)| *u *= 1.0 + 1e-3 * (0.3 * k as f64).sin());
+    let place = |q: &[f64], frame: &mut _| balance.place(&Instant::still(0.0).with(q), frame);
+    for (name, found) in product_errors(balance, [&all, &direction(&all)], &place) {
+        println!("{name:?} {found:.1e}");
+        assert!(found < 1e-6, "{name:?} {found:.1e}");
+    }
 }

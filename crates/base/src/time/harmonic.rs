@@ -32,10 +32,11 @@ pub struct HarmonicBalance<'a, S: System> {
     down: Matrix,
 }
 
-/// Storage of an evaluation: state and residual of one instance, and the residuals of all where they are filtered.
+/// Storage of an evaluation: state, residual and, once products have been asked for, change of the state at one instance.
 pub struct Work<S: System> {
     work: S::Work,
     u: Vec<f64>,
+    v: Vec<f64>,
     du: Vec<f64>,
 }
 
@@ -217,6 +218,36 @@ impl<'a, S: System> HarmonicBalance<'a, S> {
         self.times().into_iter().map(|t| t * self.omega).collect()
     }
 
+    /// out = −ωD u.
+    fn turned(&self, u: &[f64], out: &mut [f64]) {
+        let (derivative, count) = (&self.derivative, self.held.count());
+        self.rows_of(self.held, out, |b, one, row| {
+            let all = &u[one * count..(one + b) * count];
+            for (n, row) in row.chunks_exact_mut(b).enumerate() {
+                row.fill(0.0);
+                for (d, u) in derivative.row(n).iter().zip(all.chunks_exact(b)) {
+                    row.iter_mut().zip(u).for_each(|(r, u)| *r -= d * u);
+                }
+            }
+        });
+    }
+
+    /// Adds `found`, what is found at instance `n` of those where R is evaluated, to the instances that hold the solution.
+    fn gather(&self, n: usize, found: &[f64], du: &mut [f64]) {
+        let same = self.held == self.seen;
+        self.rows_of(self.held, du, |b, one, row| {
+            let found = &found[one..one + b];
+            if same {
+                row[n * b..(n + 1) * b].iter_mut().zip(found).for_each(|(r, d)| *r += d);
+                return;
+            }
+            for (k, row) in row.chunks_exact_mut(b).enumerate() {
+                let weight = self.down.row(k)[n];
+                row.iter_mut().zip(found).for_each(|(r, d)| *r += weight * d);
+            }
+        });
+    }
+
     /// Calls `f` with the state of every instance where R is evaluated.
     fn each(&self, u: &[f64], mut f: impl FnMut(usize, &[f64])) {
         let mut one = vec![0.0; self.system.len()];
@@ -257,7 +288,7 @@ impl<S: System> System for HarmonicBalance<'_, S> {
 
     fn work(&self) -> Self::Work {
         let zero = vec![0.0; self.system.len()];
-        Work { work: self.system.work(), u: zero.clone(), du: zero }
+        Work { work: self.system.work(), u: zero.clone(), v: Vec::new(), du: zero }
     }
 
     fn frame(&self, _: &Instant<'_>, u: &[f64]) -> Self::Frame {
@@ -279,32 +310,22 @@ impl<S: System> System for HarmonicBalance<'_, S> {
 
     #[doc(alias = "eq32")]
     fn rhs(&self, frame: &Self::Frame, u: &[f64], work: &mut Self::Work, du: &mut [f64]) {
-        let (derivative, count) = (&self.derivative, self.held.count());
-        self.rows_of(self.held, du, |b, one, row| {
-            let all = &u[one * count..(one + b) * count];
-            for (n, row) in row.chunks_exact_mut(b).enumerate() {
-                row.fill(0.0);
-                for (d, u) in derivative.row(n).iter().zip(all.chunks_exact(b)) {
-                    row.iter_mut().zip(u).for_each(|(r, u)| *r -= d * u);
-                }
-            }
-        });
-        let same = self.held == self.seen;
+        self.turned(u, du);
         for (n, frame) in frame.iter().enumerate() {
             self.look(u, n, &mut work.u);
             self.system.rhs(frame, &work.u, &mut work.work, &mut work.du);
-            let found = &work.du;
-            self.rows_of(self.held, du, |b, one, row| {
-                let found = &found[one..one + b];
-                if same {
-                    row[n * b..(n + 1) * b].iter_mut().zip(found).for_each(|(r, d)| *r += d);
-                    return;
-                }
-                for (k, row) in row.chunks_exact_mut(b).enumerate() {
-                    let weight = self.down.row(k)[n];
-                    row.iter_mut().zip(found).for_each(|(r, d)| *r += weight * d);
-                }
-            });
+            self.gather(n, &work.du, du);
+        }
+    }
+
+    fn jvp(&self, frame: &Self::Frame, [u, v]: [&[f64]; 2], work: &mut Self::Work, out: &mut [f64]) {
+        self.turned(v, out);
+        work.v.resize(self.system.len(), 0.0);
+        for (n, frame) in frame.iter().enumerate() {
+            self.look(u, n, &mut work.u);
+            self.look(v, n, &mut work.v);
+            self.system.jvp(frame, [&work.u, &work.v], &mut work.work, &mut work.du);
+            self.gather(n, &work.du, out);
         }
     }
 

@@ -2,7 +2,7 @@
 //!
 //! What harmonic balance tends to as the amplitude goes to nothing (Hall and Clark 1993, doi:10.2514/3.11706), without the mean and without
 //! iterations of Newton's method: one linear system for each right-hand side, real and imaginary part beside one another. It begins with the
-//! best combination of the solutions that are known. Products with ∂R/∂U are exact ([`derivative`](crate::system::System::derivative)),
+//! best combination of the solutions that are known. Products with ∂R/∂U are exact ([`jvp`](crate::system::System::jvp)),
 //! those that build the Krylov space hasty differences; the preconditioner is that of harmonic balance with one harmonic. Solves are
 //! refined: the residual is found anew with exact products until it is small.
 use super::recycled::Recycled;

@@ -6,6 +6,7 @@
 //! axes should be taken: lists, spacings, volumes, lengths.
 use super::fluid::{Fluid, Work};
 use super::frame::Frame;
+use super::lanes::Number;
 use super::viscous::WallSlopes;
 use super::wall_fits::lowest_two;
 use crate::cloud::Cloud;
@@ -29,6 +30,23 @@ impl<const D: usize> Fluid<D> {
         self.fill_states(frame, u, work);
         self.fill_gradients(frame, work);
         View::new(self, frame, work)
+    }
+}
+
+impl<const D: usize> Fluid<D> {
+    /// Force of the gas on interface particle `w`, whose state and gradients are in `work`, in the axes of the case: pressure beyond that of
+    /// the far field, and friction (per unit span in 2-D); with numbers that carry their change, how it changes.
+    pub fn wall_force<S: Number>(&self, (frame, work): (&Frame<D>, &Work<D, S>), w: usize) -> Vector<D, S> {
+        if let Some(taken) = frame.taken.get(w).filter(|t| t.area > 0.0) {
+            return frame.to_inertial_axes(&Vector::constant(&taken.force));
+        }
+        let cloud = &frame.discretisation.cloud;
+        let wall = &cloud.interface[w];
+        let beyond = S::constant(self.far_field.pressure()) - work.state[cloud.n_fluid + w].pressure;
+        let push = Vector::constant(&wall.area) * beyond;
+        let rub = self.wall_slopes((cloud, work), w, frame.walls.get(w));
+        let rub = rub.map_or(Vector::zero(), |at| at.stress.times(wall.area.norm()));
+        frame.to_inertial_axes(&(push + rub))
     }
 }
 
@@ -110,15 +128,7 @@ impl<'a, const D: usize> View<'a, D> {
 
     /// Force of the gas on interface particle `w`: pressure beyond that of the far field, and friction (per unit span in 2-D).
     pub fn wall_force(&self, w: usize) -> Vector<D> {
-        if let Some(taken) = self.frame.taken.get(w).filter(|t| t.area > 0.0) {
-            return self.frame.to_inertial_axes(&taken.force);
-        }
-        let cloud = self.cloud();
-        let wall = &cloud.interface[w];
-        let push = wall.area * (self.fluid.far_field.pressure() - self.work.state[cloud.n_fluid + w].pressure);
-        let rub = self.fluid.wall_slopes((cloud, self.work), w, self.frame.walls.get(w));
-        let rub = rub.map_or(Vector::ZERO, |at| at.stress * wall.area.norm());
-        self.frame.to_inertial_axes(&(push + rub))
+        self.fluid.wall_force((self.frame, self.work), w)
     }
 
     /// Stress and heat on the wall of interface particle `w`; `None` where the gas slides.
