@@ -8,13 +8,14 @@
 //! that they sum exactly to zero. In 3-D the particles are selected from dense samples of the surface (no two nearer
 //! than 0.78 h) and moved to the centroid of the samples that they represent (eight iterations of Lloyd, 1982). Their
 //! area vectors are sums over these samples and therefore close as accurately as the surface does.
+use std::cell::Cell;
 use std::collections::BTreeMap;
 
 use super::Interface;
 use super::grid::Grid;
 use super::tree::Tree;
 use crate::geometry::{Chain, Surface};
-use crate::math::parallel::{order_by_key, sweep};
+use crate::math::parallel::{order_by_key, sweep, sweep_slots};
 use crate::math::{Bounds, Vector};
 
 /// Spacing along the outline, in background cells (2-D).
@@ -264,29 +265,82 @@ impl<const D: usize> Walk<'_, D> {
     }
 }
 
-/// A small piece of surface, from which interface particles are selected.
-#[derive(Clone, Copy)]
-struct Sample<const D: usize> {
-    x: Vector<D>,
-    normal: Vector<D>,
-    /// Area vector.
-    area: Vector<D>,
-    spacing: f64,
-    element: u32,
+/// Small pieces of surface, from which interface particles are selected. Each property is an array of its own: most loops need one or two.
+struct Samples<const D: usize> {
+    x: Vec<Vector<D>>,
+    normal: Vec<Vector<D>>,
+    /// Part of the element.
+    share: Vec<f64>,
+    area: Vec<f64>,
+    spacing: Vec<f64>,
+    element: Vec<u32>,
+}
+
+/// One of them.
+type Sample<const D: usize> = (Vector<D>, Vector<D>, f64, f64, u32);
+
+impl<const D: usize> Samples<D> {
+    /// The samples of groups in their order: position, normal, share of the element, spacing, element.
+    fn of(surface: &Surface<D>, groups: Vec<Vec<Sample<D>>>) -> Self {
+        let n = groups.iter().map(Vec::len).sum();
+        let numbers = || Vec::with_capacity(n);
+        let (x, normal, element) = (Vec::with_capacity(n), Vec::with_capacity(n), Vec::with_capacity(n));
+        let mut all = Self { x, normal, share: numbers(), area: numbers(), spacing: numbers(), element };
+        for (x, normal, share, spacing, element) in groups.into_iter().flatten() {
+            all.x.push(x);
+            all.normal.push(normal);
+            all.share.push(share);
+            all.area.push((surface.element_area_vector(element) * share).norm());
+            all.spacing.push(spacing);
+            all.element.push(element);
+        }
+        all
+    }
+
+    fn len(&self) -> usize {
+        self.x.len()
+    }
+
+    /// True when samples `a` and `b` are on the same side of thin bodies.
+    fn beside(&self, a: usize, b: usize) -> bool {
+        self.normal[a].dot(&self.normal[b]) >= SAME_SIDE
+    }
+
+    /// Puts the samples into the order of a space-filling curve.
+    fn sort_along_curve(&mut self) {
+        let bounds = Bounds::around(&self.x);
+        let scale = f64::from(1u32 << 20) / (bounds.extent().max_abs() * 1.0001);
+        let cell = |x: &Vector<D>| std::array::from_fn::<u32, D, _>(|d| ((x[d] - bounds.min[d]) * scale) as u32);
+        let order = order_by_key(self.len(), |k| crate::math::hilbert::hilbert_index(cell(&self.x[k]), 20));
+        let mut spare = Vec::new();
+        [&mut self.x, &mut self.normal].into_iter().for_each(|all| permute(all, &order, &mut spare));
+        let mut spare = Vec::new();
+        [&mut self.share, &mut self.area, &mut self.spacing]
+            .into_iter()
+            .for_each(|all| permute(all, &order, &mut spare));
+        permute(&mut self.element, &order, &mut Vec::new());
+    }
+}
+
+/// Puts `all` into the order of the numbers `order`; `spare` lends memory.
+fn permute<T: Copy + Send + Sync>(all: &mut Vec<T>, order: &[u32], spare: &mut Vec<T>) {
+    spare.clone_from(all);
+    sweep(spare, |k| all[order[k] as usize]);
+    std::mem::swap(all, spare);
 }
 
 /// 3-D: dense samples, greedy pick, Lloyd.
 fn scatter<const D: usize>(surface: &Surface<D>, tree: &Tree<D>, planes: &[Plane]) -> Placed<D> {
-    let mut samples = surface.pieces(
-        |x| SAMPLE_SIZE * tree.leaf_at(x).size,
-        |x, normal, share, element| {
-            let spacing = tree.leaf_at(x).size;
+    let groups = surface.grouped_pieces(
+        |x, last: &Cell<u32>| SAMPLE_SIZE * tree.size_at(x, last),
+        |x, normal, share, element, last| {
+            let spacing = tree.size_at(x, last);
             let inside = planes.iter().all(|p| p.1 * (x[p.0] - p.2) < -ON_PLANE * spacing);
-            let area = surface.element_area_vector(element) * share;
-            inside.then_some(Sample { x: *x, normal: *normal, area, spacing, element })
+            inside.then_some((*x, *normal, share, spacing, element))
         },
     );
-    sort_along_curve(&mut samples);
+    let mut samples = Samples::of(surface, groups);
+    samples.sort_along_curve();
     let (mut chosen, mut owner) = pick(&samples);
     for _ in 0..LLOYD_ROUNDS {
         assign(&samples, &chosen, &mut owner);
@@ -296,62 +350,38 @@ fn scatter<const D: usize>(surface: &Surface<D>, tree: &Tree<D>, planes: &[Plane
     gather(surface, &samples, &chosen, &owner)
 }
 
-fn sort_along_curve<const D: usize>(samples: &mut [Sample<D>]) {
-    let bounds = Bounds::around(samples.iter().map(|s| &s.x));
-    let scale = f64::from(1u32 << 20) / (bounds.extent().max_abs() * 1.0001);
-    let cell = |s: &Sample<D>| std::array::from_fn::<u32, D, _>(|d| ((s.x[d] - bounds.min[d]) * scale) as u32);
-    let mut order = order_by_key(samples.len(), |k| crate::math::hilbert::hilbert_index(cell(&samples[k]), 20));
-    permute(samples, &mut order);
-}
-
-/// Permutes `all` in place so that position k holds the former element `order[k]`; `order` is overwritten.
-fn permute<T: Copy>(all: &mut [T], order: &mut [u32]) {
-    for start in 0..order.len() {
-        let (first, mut k) = (all[start], start);
-        loop {
-            let from = std::mem::replace(&mut order[k], k as u32) as usize;
-            if from == start {
-                all[k] = first;
-                break;
-            }
-            all[k] = all[from];
-            k = from;
-        }
-    }
-}
-
 /// Samples that keep `PICK_SPACING` between them, first come first served, and for every sample the one that is in its way: the nearest, or
 /// where samples crowd on slivers any one of them.
-fn pick<const D: usize>(samples: &[Sample<D>]) -> (Vec<usize>, Vec<u32>) {
+fn pick<const D: usize>(samples: &Samples<D>) -> (Vec<usize>, Vec<u32>) {
     // one grid for each spacing, so that the bins suit all queries
     let mut grids: BTreeMap<u64, Grid<D>> = BTreeMap::new();
-    for s in samples {
-        grids.entry(s.spacing.to_bits()).or_insert_with(|| Grid::new(2.0 * PICK_SPACING * s.spacing));
+    for h in &samples.spacing {
+        grids.entry(h.to_bits()).or_insert_with(|| Grid::new(2.0 * PICK_SPACING * h));
     }
     let mut chosen: Vec<usize> = Vec::new();
     let mut owner = vec![0; samples.len()];
     let crowded = are_crowded(samples);
-    for (k, s) in samples.iter().enumerate() {
-        let r = PICK_SPACING * s.spacing;
+    for (k, x) in samples.x.iter().enumerate() {
+        let r = PICK_SPACING * samples.spacing[k];
         if let Some(last) = owner[..k].last().copied().filter(|_| crowded) {
-            let o = &samples[chosen[last as usize]];
-            if (o.x - s.x).norm_squared() <= r * r && o.normal.dot(&s.normal) >= SAME_SIDE {
+            let o = chosen[last as usize];
+            if (samples.x[o] - *x).norm_squared() <= r * r && samples.beside(o, k) {
                 owner[k] = last;
                 continue;
             }
         }
         let mut best = (r * r, u32::MAX);
-        grids[&s.spacing.to_bits()].near(&s.x, r, |j| {
-            let o = &samples[chosen[j as usize]];
-            let d = (o.x - s.x).norm_squared();
-            if d <= best.0 && o.normal.dot(&s.normal) >= SAME_SIDE {
+        grids[&samples.spacing[k].to_bits()].near(x, r, |j| {
+            let o = chosen[j as usize];
+            let d = (samples.x[o] - *x).norm_squared();
+            if d <= best.0 && samples.beside(o, k) {
                 best = (d, j);
             }
         });
         owner[k] = best.1;
         if best.1 == u32::MAX {
             owner[k] = chosen.len() as u32;
-            grids.values_mut().for_each(|g| g.insert(&s.x, chosen.len() as u32));
+            grids.values_mut().for_each(|g| g.insert(x, chosen.len() as u32));
             chosen.push(k);
         }
     }
@@ -359,47 +389,47 @@ fn pick<const D: usize>(samples: &[Sample<D>]) -> (Vec<usize>, Vec<u32>) {
 }
 
 /// True on a surface of slivers, whose pieces are as long as usual but much narrower.
-fn are_crowded<const D: usize>(samples: &[Sample<D>]) -> bool {
-    let asked = |s: &Sample<D>| s.area.norm() / (SAMPLE_SIZE * s.spacing).powi(D as i32 - 1);
-    samples.len() as f64 > MANY * samples.iter().map(asked).sum::<f64>()
+fn are_crowded<const D: usize>(samples: &Samples<D>) -> bool {
+    let asked = |(area, h): (&f64, &f64)| area / (SAMPLE_SIZE * h).powi(D as i32 - 1);
+    samples.len() as f64 > MANY * samples.area.iter().zip(&samples.spacing).map(asked).sum::<f64>()
 }
 
 /// Makes `owner` the chosen sample nearest to each sample, on the same side of thin bodies: its owner so far or one of the
 /// others around that.
-fn assign<const D: usize>(samples: &[Sample<D>], chosen: &[usize], owner: &mut [u32]) {
+fn assign<const D: usize>(samples: &Samples<D>, chosen: &[usize], owner: &mut [u32]) {
     let near = by_distance(samples, chosen);
-    let old = owner.to_vec();
-    sweep(owner, |k| {
-        let s = &samples[k];
-        let mut best = (f64::INFINITY, old[k]);
+    let places: Vec<(Vector<D>, Vector<D>)> = chosen.iter().map(|k| (samples.x[*k], samples.normal[*k])).collect();
+    sweep_slots(owner, |k, owner| {
+        let (x, normal, old) = (&samples.x[k], &samples.normal[k], *owner);
+        let mut best = (f64::INFINITY, old);
         let mut try_one = |j: u32| {
-            let o = &samples[chosen[j as usize]];
-            let r = (o.x - s.x).norm_squared();
-            if o.normal.dot(&s.normal) >= SAME_SIDE && (r, j) < best {
+            let (place, facing) = &places[j as usize];
+            let r = (*place - *x).norm_squared();
+            if facing.dot(normal) >= SAME_SIDE && (r, j) < best {
                 best = (r, j);
             }
             best.0
         };
-        let mut reach = try_one(old[k]).sqrt();
-        let own = (samples[chosen[old[k] as usize]].x - s.x).norm();
-        for (apart, j) in &near[old[k] as usize] {
+        let mut reach = try_one(old).sqrt();
+        let own = (places[old as usize].0 - *x).norm();
+        for (apart, j) in &near[old as usize] {
             // none of those to come is nearer: the triangle's inequality
             if (apart - own) * (1.0 - ROUNDING) > reach {
                 break;
             }
             reach = try_one(*j).sqrt();
         }
-        best.1
+        *owner = best.1;
     });
 }
 
 /// For each chosen sample the others around it with their distances, the nearest first.
-fn by_distance<const D: usize>(samples: &[Sample<D>], chosen: &[usize]) -> Vec<Vec<(f64, u32)>> {
+fn by_distance<const D: usize>(samples: &Samples<D>, chosen: &[usize]) -> Vec<Vec<(f64, u32)>> {
     let around = around(samples, chosen);
     let mut near = vec![Vec::new(); chosen.len()];
     sweep(&mut near, |j| {
-        let x = &samples[chosen[j]].x;
-        let apart = |m: &u32| ((samples[chosen[*m as usize]].x - *x).norm(), *m);
+        let x = &samples.x[chosen[j]];
+        let apart = |m: &u32| ((samples.x[chosen[*m as usize]] - *x).norm(), *m);
         let mut list: Vec<(f64, u32)> = around[j].iter().map(apart).collect();
         list.sort_unstable_by(|a, b| a.0.total_cmp(&b.0));
         list
@@ -408,22 +438,22 @@ fn by_distance<const D: usize>(samples: &[Sample<D>], chosen: &[usize]) -> Vec<V
 }
 
 /// For each chosen sample the others within `AROUND` spacings of it.
-fn around<const D: usize>(samples: &[Sample<D>], chosen: &[usize]) -> Vec<Vec<u32>> {
+fn around<const D: usize>(samples: &Samples<D>, chosen: &[usize]) -> Vec<Vec<u32>> {
     let mut grids: BTreeMap<u64, Grid<D>> = BTreeMap::new();
     for k in chosen {
-        let s = &samples[*k];
-        grids.entry(s.spacing.to_bits()).or_insert_with(|| Grid::new(AROUND * s.spacing));
+        let h = samples.spacing[*k];
+        grids.entry(h.to_bits()).or_insert_with(|| Grid::new(AROUND * h));
     }
     for (k, j) in chosen.iter().zip(0..) {
-        grids.values_mut().for_each(|g| g.insert(&samples[*k].x, j));
+        grids.values_mut().for_each(|g| g.insert(&samples.x[*k], j));
     }
     let mut around = vec![Vec::new(); chosen.len()];
     sweep(&mut around, |j| {
-        let s = &samples[chosen[j]];
-        let r = AROUND * s.spacing;
+        let (x, h) = (&samples.x[chosen[j]], samples.spacing[chosen[j]]);
+        let r = AROUND * h;
         let mut list = Vec::new();
-        grids[&s.spacing.to_bits()].near(&s.x, r, |m| {
-            if m as usize != j && (samples[chosen[m as usize]].x - s.x).norm_squared() < r * r {
+        grids[&h.to_bits()].near(x, r, |m| {
+            if m as usize != j && (samples.x[chosen[m as usize]] - *x).norm_squared() < r * r {
                 list.push(m);
             }
         });
@@ -434,17 +464,16 @@ fn around<const D: usize>(samples: &[Sample<D>], chosen: &[usize]) -> Vec<Vec<u3
 }
 
 /// Moves each chosen sample to the one nearest to the centre of its set.
-fn recentre<const D: usize>(samples: &[Sample<D>], owner: &[u32], chosen: &mut [usize]) {
+fn recentre<const D: usize>(samples: &Samples<D>, owner: &[u32], chosen: &mut [usize]) {
     let mut centre = vec![(Vector::<D>::ZERO, 0.0); chosen.len()];
-    for (s, o) in samples.iter().zip(owner) {
-        let w = s.area.norm();
-        centre[*o as usize].0 += s.x * w;
+    for ((x, w), o) in samples.x.iter().zip(&samples.area).zip(owner) {
+        centre[*o as usize].0 += *x * *w;
         centre[*o as usize].1 += w;
     }
+    centre.iter_mut().for_each(|(sum, weight)| *sum = *sum * (1.0 / *weight));
     let mut best = vec![(f64::INFINITY, 0usize); chosen.len()];
-    for (k, (s, o)) in samples.iter().zip(owner).enumerate() {
-        let (sum, weight) = centre[*o as usize];
-        let r = (s.x - sum * (1.0 / weight)).norm_squared();
+    for (k, (x, o)) in samples.x.iter().zip(owner).enumerate() {
+        let r = (*x - centre[*o as usize].0).norm_squared();
         if r < best[*o as usize].0 {
             best[*o as usize] = (r, k);
         }
@@ -452,25 +481,27 @@ fn recentre<const D: usize>(samples: &[Sample<D>], owner: &[u32], chosen: &mut [
     chosen.iter_mut().zip(&best).for_each(|(c, b)| *c = b.1);
 }
 
-fn gather<const D: usize>(surface: &Surface<D>, samples: &[Sample<D>], chosen: &[usize], owner: &[u32]) -> Placed<D> {
+fn gather<const D: usize>(surface: &Surface<D>, samples: &Samples<D>, chosen: &[usize], owner: &[u32]) -> Placed<D> {
     let mut placed = Placed::default();
     let mut area = vec![Vector::<D>::ZERO; chosen.len()];
-    samples.iter().zip(owner).for_each(|(s, o)| area[*o as usize] += s.area);
+    for ((element, share), o) in samples.element.iter().zip(&samples.share).zip(owner) {
+        area[*o as usize] += surface.element_area_vector(*element) * *share;
+    }
     let around = around(samples, chosen);
     let mut curvature = vec![[Vector::ZERO; D]; chosen.len()];
     sweep(&mut curvature, |j| {
-        let s = &samples[chosen[j]];
-        let others = around[j].iter().map(|m| &samples[chosen[*m as usize]]).filter(|o| o.normal.dot(&s.normal) > 0.5);
-        shape_operator(&s.normal, &others.map(|o| (o.x - s.x, o.normal - s.normal)).collect::<Vec<_>>())
+        let (x, normal) = (samples.x[chosen[j]], samples.normal[chosen[j]]);
+        let others = around[j].iter().map(|m| chosen[*m as usize]).filter(|o| samples.normal[*o].dot(&normal) > 0.5);
+        let changes = others.map(|o| (samples.x[o] - x, samples.normal[o] - normal));
+        shape_operator(&normal, &changes.collect::<Vec<_>>())
     });
     for (j, k) in chosen.iter().enumerate() {
-        let s = &samples[*k];
-        let element = surface.element(s.element);
-        placed.x.push(s.x);
-        placed.spacing.push(s.spacing);
+        let element = surface.element(samples.element[*k]);
+        placed.x.push(samples.x[*k]);
+        placed.spacing.push(samples.spacing[*k]);
         let (body, tag) = (element.body, element.tag);
-        let curvature = curvature[j];
-        placed.interface.push(Interface { normal: s.normal, area: area[j], curvature, body, tag, piece: 0, arc: 0.0 });
+        let (normal, curvature) = (samples.normal[*k], curvature[j]);
+        placed.interface.push(Interface { normal, area: area[j], curvature, body, tag, piece: 0, arc: 0.0 });
         placed.next.push(u32::MAX);
     }
     placed
@@ -502,17 +533,18 @@ mod tests {
     use super::*;
 
     /// Samples on a plate, `across` to a sample's size along one of its sides, and one along the other.
-    fn plate(across: usize) -> Vec<Sample<3>> {
-        let size = SAMPLE_SIZE * 0.1;
-        let sample = |k: usize| Sample {
-            x: Vector([(k / 80) as f64 * size / across as f64, (k % 80) as f64 * size, 0.5]),
-            normal: Vector([0.0, 0.0, 1.0]),
-            area: Vector([0.0, 0.0, size * size / across as f64]),
-            spacing: 0.1,
-            element: 0,
+    fn plate(across: usize) -> Samples<3> {
+        let (size, n) = (SAMPLE_SIZE * 0.1, 80 * 80 * across);
+        let at = |k: usize| Vector([(k / 80) as f64 * size / across as f64, (k % 80) as f64 * size, 0.5]);
+        let mut samples = Samples {
+            x: (0..n).map(at).collect(),
+            normal: vec![Vector([0.0, 0.0, 1.0]); n],
+            share: vec![1.0; n],
+            area: vec![size * size / across as f64; n],
+            spacing: vec![0.1; n],
+            element: vec![0; n],
         };
-        let mut samples: Vec<Sample<3>> = (0..80 * 80 * across).map(sample).collect();
-        sort_along_curve(&mut samples);
+        samples.sort_along_curve();
         samples
     }
 
@@ -524,11 +556,11 @@ mod tests {
             let (mut chosen, mut owner) = pick(&samples);
             for _ in 0..2 {
                 assign(&samples, &chosen, &mut owner);
-                let apart = |s: &Sample<3>, j: u32| (samples[chosen[j as usize]].x - s.x).norm_squared();
-                for (s, own) in samples.iter().zip(&owner).step_by(37) {
+                let apart = |x: &Vector<3>, j: u32| (samples.x[chosen[j as usize]] - *x).norm_squared();
+                for (x, own) in samples.x.iter().zip(&owner).step_by(37) {
                     let nearest =
-                        (0..chosen.len() as u32).map(|j| (apart(s, j), j)).reduce(|a, b| if b < a { b } else { a });
-                    assert_eq!(Some((apart(s, *own), *own)), nearest);
+                        (0..chosen.len() as u32).map(|j| (apart(x, j), j)).reduce(|a, b| if b < a { b } else { a });
+                    assert_eq!(Some((apart(x, *own), *own)), nearest);
                 }
                 recentre(&samples, &owner, &mut chosen);
             }
@@ -541,7 +573,7 @@ mod tests {
             let samples = plate(across);
             let chosen = pick(&samples).0;
             let r = PICK_SPACING * 0.1;
-            let apart = |a: usize, b: usize| (samples[a].x - samples[b].x).norm();
+            let apart = |a: usize, b: usize| (samples.x[a] - samples.x[b]).norm();
             assert!(chosen.iter().enumerate().all(|(k, a)| chosen[..k].iter().all(|b| apart(*a, *b) > r)));
             assert!((0..samples.len()).step_by(11).all(|k| chosen.iter().any(|a| apart(*a, k) <= r)));
         }

@@ -2,6 +2,8 @@
 //!
 //! Cells are addressed by integers in units of the finest possible cell, so that neighbours are found by arithmetic alone.
 //! The forest is balanced: cells that touch, corners included, differ by one level at most.
+use std::cell::Cell;
+
 use crate::math::parallel::sweep;
 use crate::math::{Bounds, Vector};
 
@@ -156,6 +158,19 @@ impl<const D: usize> Tree<D> {
     /// The leaf that contains `x`; a point outside the box is moved to its border.
     pub fn leaf_at(&self, x: &Vector<D>) -> Leaf<D> {
         self.leaf(self.find(&self.cell_at(x).map(i64::from)).unwrap_or(0))
+    }
+
+    /// Size of the leaf that contains `x`, as of [`leaf_at`](Self::leaf_at). The leaf is looked for in `last` first, the
+    /// one of the point before.
+    pub fn size_at(&self, x: &Vector<D>, last: &Cell<u32>) -> f64 {
+        let cell = self.cell_at(x);
+        let node = &self.nodes[last.get() as usize];
+        let size = 1u32 << (self.max_level - node.level);
+        let within = (0..D).all(|d| cell[d].wrapping_sub(node.anchor[d]) < size);
+        if !within || node.first_child != NONE {
+            last.set(self.find(&cell.map(i64::from)).unwrap_or(0));
+        }
+        self.root_size / (1u64 << self.nodes[last.get() as usize].level) as f64
     }
 
     /// Integer coordinates of the finest possible cell that contains `x`; a point outside the box is moved to its
@@ -335,6 +350,16 @@ mod tests {
     fn sample() -> Tree<2> {
         let forest = Forest { origin: Vector([-1.0, -1.0]), root_size: 1.0, roots: [2, 2], periodic: [true, false] };
         Tree::build(&forest, usize::MAX, |x, size| size > 0.01 && x.norm() < size).unwrap()
+    }
+
+    #[test]
+    fn sizes_do_not_depend_on_the_points_before() {
+        let tree = sample();
+        let last = Cell::new(0);
+        for k in 0..2000 {
+            let x = Vector([(k as f64 * 0.37).sin() * 1.1, (k as f64 * 0.011).cos() * 1.1]);
+            assert_eq!(tree.size_at(&x, &last).to_bits(), tree.leaf_at(&x).size.to_bits(), "{x:?}");
+        }
     }
 
     #[test]

@@ -139,7 +139,7 @@ mod tests {
                 .filter(|e| edges(&needle, &blades[*e as usize]) || edges(&blades[*e as usize], &needle))
                 .collect();
             let mut found = Vec::new();
-            tree.meeting(&needle, |e, corners| {
+            tree.meeting(0, &needle, |e, corners| {
                 found.extend(simplex::intersection(&needle, corners).map(|_| e));
                 false
             });

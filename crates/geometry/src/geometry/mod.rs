@@ -18,6 +18,7 @@ mod loft;
 mod marks;
 mod mesh;
 mod naca;
+mod noise;
 mod outline;
 mod parts;
 mod placement;
@@ -277,7 +278,9 @@ fn load_shell(name: &str, body: &Body, folder: &Path, notes: &mut Vec<String>) -
         Shape::Surface(file) => {
             let within = body.weld.map(|l| l.0 / body.placement.scale);
             let soup = mesh::read(file, opened(folder, file)?, notes)?;
-            AnyShell::Space(repair::shell(file, &soup, within, notes)?)
+            let shell = repair::shell(file, &soup, within, notes)?;
+            notes.extend(shell.noise(&shell.joints()).map(|noise| noise.told(file, shell.crease)));
+            AnyShell::Space(shell)
         }
         Shape::Wing(wing) => {
             let root = section_of(&wing.naca, &wing.airfoil, folder, notes);

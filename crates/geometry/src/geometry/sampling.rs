@@ -1,4 +1,6 @@
 //! Sampling of a surface, for refinement sources and interface particles.
+use super::shell::Exact;
+use super::simplex::{self, CurvedPatch};
 use super::surface::{Element, Surface};
 use crate::math::Vector;
 use crate::math::parallel::sweep_each;
@@ -81,27 +83,40 @@ impl<const D: usize> Surface<D> {
         size: impl Fn(&Vector<D>) -> f64 + Sync,
         f: impl Fn(&Vector<D>, &Vector<D>, f64, u32) -> Option<T> + Sync,
     ) -> Vec<T> {
-        let n = self.elements.len();
-        let mut groups = vec![Vec::new(); n.div_ceil(GROUP)];
-        sweep_each(&mut groups, |g| {
-            let mut found = Vec::new();
-            for e in (g * GROUP) as u32..n.min((g + 1) * GROUP) as u32 {
-                self.subdivide(e, &size, &mut |x, normal, share| found.extend(f(x, normal, share, e)));
-            }
-            found
-        });
+        let groups = self.grouped_pieces(|x, ()| size(x), |x, normal, share, e, ()| f(x, normal, share, e));
         // one after the other, to avoid two copies of the whole list
         let mut all = Vec::with_capacity(groups.iter().map(Vec::len).sum());
         groups.into_iter().for_each(|found| all.extend(found));
         all
     }
 
+    /// The same in groups of consecutive elements. Both functions of a group get what it remembers from one call to the
+    /// next, such as the place of the last point in a tree.
+    pub fn grouped_pieces<T: Clone + Send, M: Default>(
+        &self,
+        size: impl Fn(&Vector<D>, &M) -> f64 + Sync,
+        f: impl Fn(&Vector<D>, &Vector<D>, f64, u32, &M) -> Option<T> + Sync,
+    ) -> Vec<Vec<T>> {
+        let n = self.elements.len();
+        let mut groups = vec![Vec::new(); n.div_ceil(GROUP)];
+        sweep_each(&mut groups, |g| {
+            let (mut found, memory) = (Vec::new(), M::default());
+            for e in (g * GROUP) as u32..n.min((g + 1) * GROUP) as u32 {
+                let mut keep = |x: &_, normal: &_, share| found.extend(f(x, normal, share, e, &memory));
+                self.subdivide(e, &|x| size(x, &memory), &mut keep);
+            }
+            found
+        });
+        groups
+    }
+
     /// Bisects an element across its longest side until the parts are small enough; points lie on the exact shape.
     fn subdivide(&self, e: u32, size: &dyn Fn(&Vector<D>) -> f64, f: &mut dyn FnMut(&Vector<D>, &Vector<D>, f64)) {
-        if let Some(bands) = Bands::along(&self.corners(e)) {
-            return bands.cut(size, &mut |weights, share| self.give(e, weights, share, f));
-        }
+        let shape = Shape::of(self, e);
         let corners = self.corners(e);
+        if let Some(bands) = Bands::along(&corners) {
+            return bands.cut(size, &mut |weights, share| shape.give(&weights, share, f));
+        }
         let identity: [[f64; D]; D] = std::array::from_fn(|r| std::array::from_fn(|c| if r == c { 1.0 } else { 0.0 }));
         let mut stack = vec![(identity, 1.0)];
         while let Some((w, share)) = stack.pop() {
@@ -126,15 +141,33 @@ impl<const D: usize> Surface<D> {
                 }
                 continue;
             }
-            self.give(e, middle, share, f);
+            shape.give(&middle, share, f);
         }
+    }
+}
+
+/// The shape that an element approximates, as [`Surface::project`] gives it.
+struct Shape<'a, const D: usize> {
+    corners: [Vector<D>; D],
+    normals: &'a [Vector<D>; D],
+    exact: Exact<D>,
+    patch: CurvedPatch<D>,
+}
+
+impl<'a, const D: usize> Shape<'a, D> {
+    fn of(surface: &'a Surface<D>, e: u32) -> Self {
+        let (corners, element) = (surface.corners(e), surface.element(e));
+        let exact = surface.exact[usize::from(element.body)];
+        Self { corners, normals: &element.normals, exact, patch: CurvedPatch::new(&corners, &element.normals) }
     }
 
     /// Calls `f` with the point of the shape at these barycentric weights and with its share of the element.
-    fn give(&self, e: u32, weights: [f64; D], share: f64, f: &mut dyn FnMut(&Vector<D>, &Vector<D>, f64)) {
-        let (point, normal) = self.element_point(e, &weights);
-        let shape = self.project(&super::surface::Nearest { point, normal, distance: 0.0, element: e, weights });
-        f(&shape.point, &shape.normal, share);
+    fn give(&self, weights: &[f64; D], share: f64, f: &mut dyn FnMut(&Vector<D>, &Vector<D>, f64)) {
+        if let Exact::Ball { centre, radius } = self.exact {
+            let normal = (simplex::blend(&self.corners, weights) - centre).unit();
+            return f(&(centre + normal * radius), &normal, share);
+        }
+        f(&self.patch.at(weights), &simplex::blend(self.normals, weights).unit(), share);
     }
 }
 
@@ -189,6 +222,17 @@ impl<'a, const D: usize> Bands<'a, D> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn pieces_lie_on_the_shape_of_the_surface() {
+        let surface = Surface::new(&[("ball".to_owned(), super::super::icosphere(0.5, 1))]);
+        let pieces = surface.pieces(|_| 0.1, |x, normal, _, e| Some((*x, *normal, e)));
+        assert!(pieces.len() > 2 * surface.elements.len());
+        for (x, normal, e) in pieces {
+            let near = surface.nearest(&x, 0.1).unwrap();
+            assert!(near.distance < 0.05 && (normal - x.unit()).norm() < 0.05, "{x:?} {e}");
+        }
+    }
 
     #[test]
     fn slivers_are_cut_into_pieces_that_grow_with_their_length() {

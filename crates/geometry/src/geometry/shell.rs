@@ -60,10 +60,11 @@ pub struct Edge<const D: usize> {
 }
 
 /// Two elements that share a facet.
-struct Joint {
-    facet: [u32; 2],
+pub(super) struct Joint {
+    pub(super) facet: [u32; 2],
     elements: [u32; 2],
-    turn: f64,
+    /// Angle between the normals (rad), positive where the body is convex.
+    pub(super) turn: f64,
 }
 
 /// Geometric features derived from the elements of a shell.
@@ -96,12 +97,15 @@ impl<const D: usize> Shell<D> {
     /// Creases, corner normals and curvature. Edges have body number 0 and local element numbers.
     pub(super) fn features(&self) -> Features<D> {
         let joints = self.joints();
-        let creased = |j: &Joint| j.turn.abs() > self.crease;
-        let normals = match &self.normals {
-            Some(normals) => normals.clone(),
-            None => self.smooth_normals(joints.iter().filter(|j| !creased(j))),
+        let noise = self.noise(&joints);
+        let crease = noise.map_or(self.crease, |noise| noise.crease(self.crease));
+        let creased = |j: &Joint| j.turn.abs() > crease;
+        let groups = || self.corner_groups(joints.iter().filter(|j| !creased(j)));
+        let normals = self.normals.clone().unwrap_or_else(|| self.normals_of(&groups()));
+        let curvature = match noise {
+            Some(noise) => self.curvature_over_noise(&noise, &groups()),
+            None => self.curvature.clone().unwrap_or_else(|| self.curvature_of(&normals)),
         };
-        let curvature = self.curvature.clone().unwrap_or_else(|| self.curvature_of(&normals));
         let edges = joints.iter().filter(|j| creased(j)).map(|j| Edge {
             ends: j.facet.map(|v| self.vertices[v as usize]),
             turn: j.turn,
@@ -116,14 +120,15 @@ impl<const D: usize> Shell<D> {
     pub(super) fn kinked(mut self, apart: impl Fn(&Vector<D>) -> bool) -> Self {
         let joints = self.joints();
         let kink = |j: &Joint| j.facet.iter().all(|v| apart(&self.vertices[*v as usize]));
-        let normals = self.smooth_normals(joints.iter().filter(|j| j.turn.abs() <= self.crease && !kink(j)));
+        let smooth = joints.iter().filter(|j| j.turn.abs() <= self.crease && !kink(j));
+        let normals = self.normals_of(&self.corner_groups(smooth));
         self.curvature = Some(self.curvature_of(&normals));
         self.normals = Some(normals);
         self
     }
 
     /// Facets that exactly two elements share.
-    fn joints(&self) -> Vec<Joint> {
+    pub(super) fn joints(&self) -> Vec<Joint> {
         let facets = facets(&self.elements);
         let pairs = facets.chunk_by(|a, b| a.vertices == b.vertices).filter(|run| run.len() == 2);
         pairs.map(|run| self.joint(&run[0], &run[1])).collect()
@@ -137,7 +142,8 @@ impl<const D: usize> Shell<D> {
         Joint { facet: p.vertices, elements: [p.element, q.element], turn: if concave { -turn } else { turn } }
     }
 
-    fn smooth_normals<'a>(&self, smooth: impl Iterator<Item = &'a Joint>) -> Vec<[Vector<D>; D]> {
+    /// Number of the group of every corner of the elements; corners that `smooth` facets connect belong together.
+    pub(super) fn corner_groups<'a>(&self, smooth: impl Iterator<Item = &'a Joint>) -> Vec<u32> {
         let mut group: Vec<u32> = (0..(self.elements.len() * D) as u32).collect();
         for joint in smooth {
             let [e, f] = joint.elements;
@@ -148,15 +154,20 @@ impl<const D: usize> Shell<D> {
                 }
             }
         }
+        (0..group.len() as u32).map(|corner| root(&mut group, corner)).collect()
+    }
+
+    /// Unit normals at the corners, averaged over groups of corners.
+    pub(super) fn normals_of(&self, group: &[u32]) -> Vec<[Vector<D>; D]> {
         let mut sum = vec![Vector::ZERO; group.len()];
         for e in 0..self.elements.len() {
             let c = self.corners(e);
             let area = simplex::area_vector(&c);
             for k in 0..D {
-                sum[root(&mut group, (e * D + k) as u32) as usize] += area * simplex::corner_weight(&c, k);
+                sum[group[e * D + k] as usize] += area * simplex::corner_weight(&c, k);
             }
         }
-        let mut normal = |e: usize, k: usize| sum[root(&mut group, (e * D + k) as u32) as usize].unit();
+        let normal = |e: usize, k: usize| sum[group[e * D + k] as usize].unit();
         (0..self.elements.len()).map(|e| std::array::from_fn(|k| normal(e, k))).collect()
     }
 
@@ -178,7 +189,7 @@ impl<const D: usize> Shell<D> {
     }
 
     /// Average over the elements around the vertices, which reduces the scatter of an irregular triangulation.
-    fn averaged(&self, values: &[f64]) -> Vec<f64> {
+    pub(super) fn averaged(&self, values: &[f64]) -> Vec<f64> {
         let mut sum = vec![(0.0, 0.0); self.vertices.len()];
         for (e, value) in values.iter().enumerate() {
             let area = simplex::area_vector(&self.corners(e)).norm();

@@ -175,6 +175,23 @@ fn is_beside<const D: usize>(e: &Corners<D>, f: &Corners<D>) -> bool {
     clear > 0.0 && e.iter().all(|x| clear > ON_SURFACE * n.norm() * (*x - f[0]).norm())
 }
 
+/// True when `is_beside` holds of every element in a box, about a plane with this normal through `origin`. A box is a cheap substitute for all
+/// slivers in it, which the plane of a sliver across them separates at once.
+pub(super) fn is_box_beside<const D: usize>(bounds: &Bounds<D>, normal: &Vector<D>, origin: &Vector<D>) -> bool {
+    // twice, for the rounding of both
+    const CLEAR: f64 = 2.0 * ON_SURFACE;
+    let (mut low, mut high, mut reach2) = (0.0, 0.0, 0.0);
+    for d in 0..D {
+        let (from, to) = (bounds.min[d] - origin[d], bounds.max[d] - origin[d]);
+        let (a, b) = (normal[d] * from, normal[d] * to);
+        low += a.min(b);
+        high += a.max(b);
+        reach2 += (from * from).max(to * to);
+    }
+    let clear = f64::max(low, -high);
+    clear > 0.0 && clear * clear > CLEAR * CLEAR * normal.norm_squared() * reach2
+}
+
 /// The middle of the stretch, longer than `slack`, along which two segments lie on one another. In 2-D alone.
 pub(super) fn overlap<const D: usize>(e: &Corners<D>, f: &Corners<D>, slack: f64) -> Option<Vector<D>> {
     let (length, along) = ((e[1] - e[0]).norm(), (e[1] - e[0]).unit());
@@ -261,23 +278,43 @@ pub(super) fn angle_between<const D: usize>(a: &Vector<D>, b: &Vector<D>) -> f64
     2.0 * (*a - *b).norm().atan2((*a + *b).norm())
 }
 
-/// Point with barycentric `weights` on the cubic patch through the corners with the given corner normals: a curved
-/// point-normal triangle (Vlachos et al. 2001), in 2-D the cubic arc between two points with given normals.
-pub(super) fn curved_point<const D: usize>(c: &Corners<D>, normals: &[Vector<D>; D], weights: &[f64; D]) -> Vector<D> {
-    let (mut sum, mut controls) = (Vector::ZERO, Vector::ZERO);
-    for i in 0..D {
-        sum += c[i] * weights[i].powi(3);
-        for j in (0..D).filter(|&j| j != i) {
-            let edge = c[j] - c[i];
-            let control = c[i] + (edge - normals[i] * edge.dot(&normals[i])) * (1.0 / 3.0);
-            sum += control * (3.0 * weights[i] * weights[i] * weights[j]);
-            controls += control;
+/// The cubic patch through the corners of an element with given normals there: a curved point-normal triangle (Vlachos et
+/// al. 2001), in 2-D the cubic arc between two points with given normals.
+pub(super) struct CurvedPatch<const D: usize> {
+    corners: Corners<D>,
+    /// Control points: of the edge from corner i to corner j, the one beside i.
+    controls: [[Vector<D>; D]; D],
+    /// Control point in the middle (3-D).
+    middle: Vector<D>,
+}
+
+impl<const D: usize> CurvedPatch<D> {
+    pub(super) fn new(c: &Corners<D>, normals: &[Vector<D>; D]) -> Self {
+        let (mut controls, mut sum) = ([[Vector::ZERO; D]; D], Vector::ZERO);
+        for i in 0..D {
+            for j in (0..D).filter(|&j| j != i) {
+                let edge = c[j] - c[i];
+                controls[i][j] = c[i] + (edge - normals[i] * edge.dot(&normals[i])) * (1.0 / 3.0);
+                sum += controls[i][j];
+            }
         }
+        let mean = sum * (1.0 / 6.0);
+        Self { corners: *c, controls, middle: mean + (mean - centroid(c)) * 0.5 }
     }
-    if D == 3 {
-        let mean = controls * (1.0 / 6.0);
-        let middle = mean + (mean - centroid(c)) * 0.5;
-        sum += middle * (6.0 * weights.iter().product::<f64>());
+
+    /// Point with these barycentric weights.
+    #[inline]
+    pub(super) fn at(&self, weights: &[f64; D]) -> Vector<D> {
+        let mut sum = Vector::ZERO;
+        for i in 0..D {
+            sum += self.corners[i] * weights[i].powi(3);
+            for j in (0..D).filter(|&j| j != i) {
+                sum += self.controls[i][j] * (3.0 * weights[i] * weights[i] * weights[j]);
+            }
+        }
+        if D == 3 {
+            sum += self.middle * (6.0 * weights.iter().product::<f64>());
+        }
+        sum
     }
-    sum
 }

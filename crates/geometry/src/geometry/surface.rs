@@ -302,7 +302,7 @@ impl<const D: usize> Surface<D> {
             return Projection { point: centre + normal * radius, normal, curvature: 1.0 / radius };
         }
         Projection {
-            point: simplex::curved_point(&self.corners(nearest.element), &element.normals, &nearest.weights),
+            point: simplex::CurvedPatch::new(&self.corners(nearest.element), &element.normals).at(&nearest.weights),
             normal: nearest.normal,
             curvature: self.curvature[nearest.element as usize],
         }
@@ -314,7 +314,7 @@ impl<const D: usize> Surface<D> {
         (0..self.elements.len() as u32).find_map(|e| {
             let corners = self.corners(e);
             let mut found = None;
-            self.tree.meeting(&corners, |f, other| {
+            self.tree.meeting(e + 1, &corners, |f, other| {
                 if f > e && !self.neighbours(e, f) {
                     found = simplex::intersection(&corners, other).map(|x| (x, [e, f]));
                 }
@@ -345,7 +345,7 @@ impl<const D: usize> Surface<D> {
         (0..self.elements.len() as u32).find_map(|e| {
             let corners = self.corners(e);
             let mut found = None;
-            other.tree.meeting(&corners, |_, theirs| {
+            other.tree.meeting(0, &corners, |_, theirs| {
                 if !corners.iter().any(|x| theirs.contains(x)) {
                     found = simplex::intersection(&corners, theirs);
                 }

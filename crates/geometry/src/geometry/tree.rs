@@ -56,6 +56,8 @@ pub(super) struct Tree<const D: usize> {
     bars: Vec<Bar<D>>,
     /// Of each node a corner that all its elements share, as the triangles of a fan do.
     apices: Vec<Option<Vector<D>>>,
+    /// Of each node the greatest number of an element.
+    lasts: Vec<u32>,
     corners: Vec<Corners<D>>,
     order: Vec<u32>,
 }
@@ -84,6 +86,7 @@ impl<const D: usize> Tree<D> {
             discs: Vec::new(),
             bars: Vec::new(),
             apices: Vec::new(),
+            lasts: Vec::new(),
             corners: Vec::new(),
             order: Vec::new(),
         };
@@ -103,6 +106,7 @@ impl<const D: usize> Tree<D> {
         self.dipoles.push(Dipole::of(elements, items));
         let bar = self.bar_around(elements, items);
         self.apices.push(apex(elements, items));
+        self.lasts.push(items.iter().map(|item| item.0).max().unwrap_or(0));
         self.nodes.push(Node { bounds, first: first as u32, count: items.len() as u32, right: 0, bar });
         if items.len() <= LEAF {
             return;
@@ -227,12 +231,15 @@ impl<const D: usize> Tree<D> {
         self.visit(|_, node| meets(&node.bounds, bounds), f);
     }
 
-    /// Calls `f(element, corners)` for elements that may meet the one with `corners`, until it returns true; many of those that share a corner with it
-    /// are passed over.
-    pub(super) fn meeting(&self, corners: &Corners<D>, f: impl FnMut(u32, &Corners<D>) -> bool) {
+    /// Calls `f(element, corners)` for elements numbered from `from` that may meet the one with `corners`, until it returns true; some of smaller
+    /// numbers are among them, and many of those that share a corner with it are passed over.
+    pub(super) fn meeting(&self, from: u32, corners: &Corners<D>, f: impl FnMut(u32, &Corners<D>) -> bool) {
         let bounds = simplex::bounds(corners);
+        let normal = simplex::area_vector(corners);
         let enter = |index: u32, node: &Node<D>| {
-            meets(&node.bounds, &bounds)
+            self.lasts[index as usize] >= from
+                && meets(&node.bounds, &bounds)
+                && !simplex::is_box_beside(&node.bounds, &normal, &corners[0])
                 && self.apices[index as usize].is_none_or(|apex| !corners.contains(&apex))
                 && self.bar(node).is_none_or(|bar| !bar.misses(corners))
         };
