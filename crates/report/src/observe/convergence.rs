@@ -4,7 +4,7 @@
 //! observed order is p = log₂(d₁/d₂) (Richardson 1911), the limit f + d₂/(2^p − 1), and the error bar 5/4 of the way to it
 //! (Roache 1994, grid convergence index). In space clouds are coarse beside noses and edges, the spacings of a family lie nearer to one another
 //! (h, 4/3 h, 2 h, 8/3 h), and an order that three of them show is often an accident: there errors are taken to fall with the spacing alone, so that half a spacing
-//! leaves as much as it has changed, |f(h) − f(2h)|, of wall pressure or of momentum, whichever is more; the last change, and half of what the coarsest of four clouds tells, are its floor. Between the orders 1 and 2 first-order errors (at shocks and corners) and second-order ones are
+//! leaves as much as it has changed, |f(h) − f(2h)|; the last change, half of what the coarsest of four clouds tells, and half of what the load from momentum has to go are its floor. Between the orders 1 and 2 first-order errors (at shocks and corners) and second-order ones are
 //! both there: the limit is that of f + a h + b h² through the three loads, which lies farther away. Where the gas is faster than sound
 //! shocks are captured, and no order but 1 is trusted. Loads that swing, hardly
 //! change, or change faster than the scheme can make them have no order to speak of: their bar is the honest spread, after Eça and
@@ -40,7 +40,7 @@ const LUCK: [f64; 2] = [1.0 / 16.0, 1.0 / 8.0];
 /// at Mach 0.5 with a vortex in the far field, 0.93 at 64 chords.
 const FAR: f64 = 1.0;
 /// Part of the difference between loads from wall pressure and from momentum that the error of the first may be, once what the
-/// second may still change by is taken off.
+/// second may still change by is taken off; in space also part of what is left to the second.
 const DISAGREEMENT: f64 = 0.5;
 /// What lift, drag and moment are off for gas with too much entropy, over the drag of that entropy, at most: seen on wings between 60,000
 /// and 700,000 particles (`tests/nightly/bars.py`).
@@ -237,7 +237,7 @@ fn to_come(before: Option<f64>, [b, c]: [f64; 2], shocks: bool) -> f64 {
 }
 
 /// The estimate from four clouds, coarse to fine, whose errors are taken to fall with the spacing: of the part of the spacing alone. Momentum
-/// is a second evaluation of the same load: where it has farther to go, it is what the error is estimated from.
+/// is a second evaluation of the same load: half of what it has still to go is the least error.
 fn first_order(
     clouds: &[CloudLoads; IN_SPACE],
     load: fn(&CloudLoads) -> f64,
@@ -249,7 +249,8 @@ fn first_order(
     let both = last.momentum.as_ref().zip(coarser.momentum.as_ref());
     let second = both.map_or(0.0, |(last, before)| (part(last) - part(before)).abs() / ratio(coarser));
     let change = (load(last) - load(before)).abs();
-    let spacing = (SAFETY * way(coarser).max(second)).max(change).max(FROM_COARSEST * way(coarsest));
+    let own = (SAFETY * way(coarser)).max(change).max(FROM_COARSEST * way(coarsest));
+    let spacing = own.max(DISAGREEMENT * second);
     LoadEstimate { spacing, ..LoadEstimate::default() }
 }
 
@@ -345,7 +346,7 @@ mod tests {
             CloudLoads { momentum: Some(Coefficients { cl, ..Coefficients::default() }), ..cloud }
         };
         let found = Convergence::of(&in_space(|_| 0.29).map(through), 0.01).unwrap();
-        assert!((found.cl.spacing - 0.0125).abs() < 1e-12, "{found:?}");
+        assert!((found.cl.spacing - 0.005).abs() < 1e-12, "{found:?}");
     }
 
     #[test]
