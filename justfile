@@ -45,8 +45,8 @@ pages:
 
 # bring the generated pages of the book up to date
 book:
-    ALULA_WRITE=1 cargo test -p alula --test tidy
-    ALULA_WRITE=1 cargo test -p alula-cli --test command book
+    ALULA_WRITE=1 cargo test --release --workspace --test tidy
+    ALULA_WRITE=1 cargo test --release --workspace --test command book
 
 # the table of accuracy of the book, measured again: hours; `--fast` or a name as filter are shorter
 accuracy *filter:

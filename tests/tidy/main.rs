@@ -1,7 +1,7 @@
 //! The rules of the house: floors, files, printing, lengths, equations, words.
 //!
 //! The sources are read as text; a cheap parser is enough because `rustfmt` fixes their layout. Generated pages of the book
-//! are compared with what is committed: `ALULA_WRITE=1 cargo test -p alula --test tidy` brings them up to date.
+//! are compared with what is committed: `ALULA_WRITE=1 cargo test --release --workspace --test tidy` brings them up to date.
 #![allow(clippy::unwrap_used, reason = "it may stop anywhere")]
 mod equations;
 mod floors;
@@ -96,5 +96,5 @@ fn fresh(path: &str, page: &str) {
         std::fs::write(&place, page).unwrap();
     }
     let committed = std::fs::read_to_string(&place).unwrap_or_default();
-    assert!(committed == page, "`{path}` is stale; hint: `ALULA_WRITE=1 cargo test -p alula --test tidy`");
+    assert!(committed == page, "`{path}` is stale; hint: `ALULA_WRITE=1 cargo test --release --workspace --test tidy`");
 }
