@@ -112,7 +112,7 @@ pub(crate) fn product_errors<S: System>(
     let mut frame = system.frame(&Instant::still(0.0).with(&system.placing().values(u)), u);
     placed_by(u, &mut frame);
     let (mut work, mut found) = (system.work(), vec![0.0; u.len()]);
-    system.jvp_with_frame((&frame, place), [u, v], &mut work, &mut found);
+    system.jvp_with_frame(&frame, place, [u, v], &mut work, &mut found);
     let mut exact = vec![0.0; u.len()];
     for (part, weight) in [(1.0, 8.0), (-1.0, -8.0), (2.0, -1.0), (-2.0, 1.0)] {
         let moved: Vec<f64> = u.iter().zip(v).map(|(u, v)| u + part * STEP * v).collect();

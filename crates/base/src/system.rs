@@ -179,7 +179,8 @@ pub trait System: Sync {
     /// smooth, whether coordinates move clouds rigidly or deform them; there is no such part, and no error, where all motion is prescribed.
     fn jvp_with_frame(
         &self,
-        (frame, place): (&Self::Frame, &dyn Fn(&[f64], &mut Self::Frame)),
+        frame: &Self::Frame,
+        place: &dyn Fn(&[f64], &mut Self::Frame),
         [u, v]: [&[f64]; 2],
         work: &mut Self::Work,
         out: &mut [f64],
