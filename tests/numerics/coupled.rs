@@ -215,7 +215,6 @@ fn errors_of_step(keys: &str, rigid: bool) -> [[f64; 2]; 2] {
             v[system.unknowns_of(Name::Structure)].fill(0.0);
         }
         let all = product_errors(&system, [&u, &v], &place);
-        println!("{keys} rigid {rigid} moves {moves} {all:?}");
         [all[0].1, all[1].1]
     })
 }
@@ -251,7 +250,6 @@ fn errors_of_period<S: System>(balance: &HarmonicBalance<'_, S>, u: &[f64]) {
     all.iter_mut().enumerate().for_each(|(k, u)| *u *= 1.0 + 1e-3 * (0.3 * k as f64).sin());
     let place = |q: &[f64], frame: &mut _| balance.place(&Instant::still(0.0).with(q), frame);
     for (name, found) in product_errors(balance, [&all, &direction(&all)], &place) {
-        println!("{name:?} {found:.1e}");
         assert!(found < 1e-6, "{name:?} {found:.1e}");
     }
 }

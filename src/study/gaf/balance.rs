@@ -5,7 +5,7 @@ use num_complex::Complex64;
 use super::super::flow;
 use super::super::monitor::{Monitor, Quiet};
 use super::super::solution::Solution;
-use super::cloud_error;
+use super::cloud_error::{self, OnCoarser};
 use super::record::{Column, Matrices};
 use crate::case::{AnyMode, Cloud, Gaf, Mode};
 use crate::problem::coarser::{COARSER, refinement};
@@ -59,7 +59,7 @@ pub(super) fn columns(
             }
         }
     }
-    cloud_error::tell(&mut matrices.columns, &[(ratio, coarse)]);
+    cloud_error::tell(&mut matrices.columns, &[OnCoarser { ratio, columns: coarse }]);
     keep(matrices)?;
     Ok(true)
 }

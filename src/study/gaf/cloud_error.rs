@@ -13,15 +13,22 @@ use crate::case::{Case, Gaf};
 /// Bar over estimate: nine of ten entries hold.
 const SAFETY: f64 = 1.25;
 
-/// Gives the bars of all `columns` that have their like among those of coarser clouds, each with its spacing over that of `columns`; a bar
+/// Columns on a coarser cloud.
+pub(super) struct OnCoarser {
+    /// How much coarser it is, see [`refinement`](crate::problem::coarser::refinement).
+    pub(super) ratio: f64,
+    pub(super) columns: Vec<Column>,
+}
+
+/// Gives the bars of all `columns` that have their like among those of coarser clouds; a bar
 /// of what did not converge says nothing.
-pub(super) fn tell(columns: &mut [Column], others: &[(f64, Vec<Column>)]) {
+pub(super) fn tell(columns: &mut [Column], others: &[OnCoarser]) {
     let like = |c: &Column, coarse: &[Column]| -> Option<Vec<f64>> {
         coarse.iter().find(|o| o.k == c.k && o.mode == c.mode && o.converged).map(|o| change(c, o))
     };
     let estimates = |c: &Column| {
-        let all = others.iter().filter_map(|(ratio, coarse)| {
-            Some(like(c, coarse)?.into_iter().map(|d| d / (ratio - 1.0)).collect::<Vec<f64>>())
+        let all = others.iter().filter_map(|OnCoarser { ratio, columns }| {
+            Some(like(c, columns)?.into_iter().map(|d| d / (ratio - 1.0)).collect::<Vec<f64>>())
         });
         all.reduce(|a, b| a.iter().zip(&b).map(|(a, b)| a.max(*b)).collect())
     };
@@ -95,7 +102,7 @@ mod tests {
         let mut fine = [column(0.1, 4.0, 0.3), column(0.2, 4.0, 0.3), column(0.3, 4.0, 0.3)];
         // changes of lift of 0.1, 0.2 and none
         let coarse = [column(0.1, 4.1, 0.3), column(0.2, 3.8, 0.3), column(0.3, 4.0, 0.31)];
-        tell(&mut fine, &[(2.0, coarse.to_vec())]);
+        tell(&mut fine, &[OnCoarser { ratio: 2.0, columns: coarse.to_vec() }]);
         let lift: Vec<f64> = fine.iter().map(|c| c.errors.as_ref().unwrap().cl_error / SAFETY).collect();
         for (found, expected) in lift.iter().zip([0.1, 0.2, 0.1]) {
             assert!((found - expected).abs() < 1e-12, "{lift:?}");
@@ -108,7 +115,7 @@ mod tests {
     fn what_did_not_converge_on_the_coarser_cloud_tells_nothing() {
         let mut fine = [column(0.1, 4.0, 0.3), column(0.2, 4.0, 0.3)];
         let coarse = [Column { converged: false, ..column(0.1, 9.0, 0.3) }, column(0.2, 4.2, 0.3)];
-        tell(&mut fine, &[(2.0, coarse.to_vec())]);
+        tell(&mut fine, &[OnCoarser { ratio: 2.0, columns: coarse.to_vec() }]);
         assert!(fine[0].errors.is_none() && fine[1].errors.is_some());
     }
 }

@@ -13,7 +13,7 @@ use super::super::record::work::Clock;
 use super::super::solution::Solution;
 use super::super::studies::{ForceSource, SOLVED, in_order};
 use super::super::time_left::Portion;
-use super::cloud_error;
+use super::cloud_error::{self, OnCoarser};
 use super::record::{Column, Matrices, Solved};
 use crate::case::{AnyMode, Case, Cloud, Gaf, Mode};
 use crate::geometry::dimension;
@@ -108,7 +108,7 @@ impl Asked<'_> {
         one: &Problem,
         mut shocks: bool,
         monitor: &mut dyn Monitor,
-    ) -> Result<Option<Vec<(f64, Vec<Column>)>>, RunError> {
+    ) -> Result<Option<Vec<OnCoarser>>, RunError> {
         let mut others = Vec::new();
         for ratio in [COARSER, BETWEEN] {
             if !self.plan.cloud_error || (ratio != COARSER && !shocks) {
@@ -133,7 +133,7 @@ impl Asked<'_> {
             match self.about(&coarse, &mut add, &mut Within { outer, monitor: &mut Quiet { monitor } }) {
                 Ok(Some(flow)) if flow.solved => {
                     shocks |= flow.shocks;
-                    others.push((refinement(one.given(), ratio), other));
+                    others.push(OnCoarser { ratio: refinement(one.given(), ratio), columns: other });
                 }
                 Ok(Some(_)) => monitor.note("the coarser cloud tells nothing: the steady flow on it did not converge"),
                 Ok(None) => return Ok(None),
