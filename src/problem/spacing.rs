@@ -121,18 +121,11 @@ pub(crate) enum Forces {
 
 /// The case on one cloud where it leaves all of it to the program: for forces of small motions, which are surer on it than drag is.
 pub(crate) fn on_one_cloud<const D: usize>(case: Case, surface: Option<&Surface<D>>, wanted: Forces) -> Case {
-    if case.cloud.spacing.is_some() || surface.is_none() {
+    if case.cloud.spacing.is_some() || case.accuracy.is_some() || surface.is_none() {
         return case;
     }
     let mut asked = case;
-    if asked.accuracy.is_some() && D == 2 {
-        return asked;
-    }
-    // the coarser cloud that tells the error has half as many
     asked.cloud.layers = asked.cloud.layers.or(Some(FEW_LAYERS));
-    if asked.accuracy.is_some() {
-        return asked;
-    }
     asked.accuracy = Some(Accuracy { particles: SMALL_MOTION_PARTICLES[D - 2], ..Accuracy::in_dimension(D) });
     let one = Case { accuracy: None, ..with_cloud(&asked, surface).into_owned() };
     match surface.filter(|_| D == 2 && wanted == Forces::Table && one.cloud.wall_layers.is_none()) {
