@@ -31,7 +31,7 @@ impl<const D: usize> Row for Vector<D> {
 
 /// A symmetric positive definite linear system, given by its products with vectors.
 pub struct Symmetric<E, A, P> {
-    /// `enough(norm)` is true if this norm of the residual is small enough.
+    /// `enough(r)` is true if the residual r is small enough.
     pub enough: E,
     /// `product(v, out)`: out = A v.
     pub product: A,

@@ -19,7 +19,7 @@ pub trait Scalar:
     + Div<Output = Self>
     + Neg<Output = Self>
 {
-    /// A constant.
+    /// The constant `value`, with zero derivatives.
     fn constant(value: f64) -> Self;
     /// The value without derivatives.
     fn value(self) -> f64;
