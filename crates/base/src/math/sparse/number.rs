@@ -24,9 +24,9 @@ pub(super) trait Number:
     /// Square root of a pivot; `None` if elimination cannot continue. A pivot below `floor`, a positive number, may be
     /// increased to it.
     fn root(self, floor: f64) -> Option<Self>;
-    /// 1/x.
+    /// Reciprocal 1/x.
     fn inverse(self) -> Self;
-    /// Writes the number into lane `lane` of one column of a strip.
+    /// Writes the value into lane `lane` of one column of a strip.
     fn put(self, strip: &mut [f64], lane: usize);
     /// Products of all rows of strip `a` with rows `from..from + WIDE` of strip `b`, summed over their columns and
     /// stored column by column in `tile`; `FUSED` selects fused multiply-add instructions.

@@ -176,7 +176,7 @@ pub(super) fn forward<T: Number, const R: usize>(panel: &[T], k: usize, x: &mut 
     }
 }
 
-/// x ← L⁻ᵀ x in the first `k` rows, where those below are known; sums run over `G` rows side by side.
+/// Computes x ← L⁻ᵀ x in the first `k` rows from the known rows below; sums run over `G` rows together.
 #[multiversion(targets("x86_64+avx2+fma"))]
 #[allow(unsafe_code, reason = "the attribute calls the version that the processor has just been asked for")]
 pub(super) fn backward<T: Number, const R: usize, const G: usize>(panel: &[T], k: usize, x: &mut [Rows<T, R>]) {
