@@ -262,7 +262,7 @@ pub struct Moment<'a> {
 pub struct Damping {
     /// Coefficient α of the damping proportional to mass [1/time].
     pub mass: f64,
-    /// Coefficient β of the damping proportional to stiffness [time].
+    /// Coefficient β of the damping proportional to stiffness (time).
     pub stiffness: f64,
     /// True if there is damping other than that proportional to mass.
     pub is_viscous: bool,
@@ -426,7 +426,7 @@ pub trait Preconditioner<S: System + ?Sized>: Send {
     /// Computes z ≈ (shift − ∂R/∂U)⁻¹ r in the current frames, which may differ from those of the linearisation: one
     /// frame in a march, one for each instance of a periodic solution.
     fn apply(&mut self, system: &S, frames: &[&S::Frame], r: &RightHandSide<'_>, z: &mut [f64]);
-    /// Memory in use [bytes].
+    /// Memory in use (bytes).
     fn bytes(&self) -> usize;
 
     /// Builds the preconditioner from the linearisation at one point.

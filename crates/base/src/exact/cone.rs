@@ -19,7 +19,7 @@ use std::f64::consts::FRAC_PI_2;
 
 /// Number of steps of the integration from the shock to the surface.
 const STEPS: usize = 2000;
-/// Minimum half angle [rad]; for smaller ones the shock is a Mach wave.
+/// Minimum half angle (rad); for smaller ones the shock is a Mach wave.
 const LEAST: f64 = 1e-3;
 /// Number of shock angles among which the maximum half angle is searched.
 const SEARCHED: usize = 60;
@@ -27,7 +27,7 @@ const SEARCHED: usize = 60;
 /// Flow past a cone.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ConeFlow {
-    /// Shock angle to the axis [rad].
+    /// Shock angle to the axis (rad).
     pub shock_angle: f64,
     /// Ratio of the pressure behind the shock to that of the free stream.
     pub shock_pressure: f64,
@@ -38,7 +38,7 @@ pub struct ConeFlow {
 }
 
 impl ConeFlow {
-    /// Flow at the Mach number `mach` past a cone of this half angle [rad]. Returns an error if `gamma`, the Mach
+    /// Flow at the Mach number `mach` past a cone of this half angle (rad). Returns an error if `gamma`, the Mach
     /// number or the angle is outside its range, or the shock is detached.
     pub fn new(mach: f64, half_angle: f64, gamma: f64) -> Result<Self, Error> {
         check_gamma(gamma)?;
@@ -82,7 +82,7 @@ struct Ray {
     gamma: f64,
 }
 
-/// The ray just behind a shock of the angle `shock` [rad].
+/// The ray just behind a shock of the angle `shock` (rad).
 fn behind(mach: f64, shock: f64, gamma: f64) -> Ray {
     let turn = deflection(mach, shock, gamma);
     let ahead = (1.0 + 2.0 / ((gamma - 1.0) * mach * mach)).powf(-0.5);

@@ -39,7 +39,7 @@ pub struct Diamond {
 }
 
 impl Diamond {
-    /// Flow at `mach` past a diamond of the given thickness-to-chord ratio at the angle of attack `alpha` [rad].
+    /// Flow at `mach` past a diamond of the given thickness-to-chord ratio at the angle of attack `alpha` (rad).
     /// Returns an error if an argument is outside its range or a shock is detached.
     pub fn new(mach: f64, thickness: f64, alpha: f64, gamma: f64) -> Result<Self, Error> {
         check_gamma(gamma)?;

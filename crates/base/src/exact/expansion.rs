@@ -41,19 +41,19 @@ pub fn isentropic_pressure_coefficient(speed_ratio: f64, mach: f64, gamma: f64) 
     2.0 / (gamma * m2) * (gamma / (gamma - 1.0) * heat.ln_1p()).exp_m1()
 }
 
-/// Prandtl-Meyer angle ν(M) [rad]; zero at and below Mach 1.
+/// Prandtl-Meyer angle ν(M) (rad); zero at and below Mach 1.
 pub fn prandtl_meyer_angle(mach: f64, gamma: f64) -> f64 {
     let s = (mach * mach - 1.0).max(0.0).sqrt();
     let g = ((gamma + 1.0) / (gamma - 1.0)).sqrt();
     g * (s / g).atan() - s.atan()
 }
 
-/// Prandtl-Meyer angle of the expansion into vacuum, (√((γ+1)/(γ−1)) − 1) π/2 [rad].
+/// Prandtl-Meyer angle of the expansion into vacuum, (√((γ+1)/(γ−1)) − 1) π/2 (rad).
 pub fn prandtl_meyer_limit(gamma: f64) -> f64 {
     (((gamma + 1.0) / (gamma - 1.0)).sqrt() - 1.0) * FRAC_PI_2
 }
 
-/// Mach number of the Prandtl-Meyer angle `angle` [rad]; an error if the angle is outside its range.
+/// Mach number of the Prandtl-Meyer angle `angle` (rad); an error if the angle is outside its range.
 pub fn mach_of_prandtl_meyer_angle(angle: f64, gamma: f64) -> Result<f64, Error> {
     check_gamma(gamma)?;
     if !(0.0 <= angle && angle < prandtl_meyer_limit(gamma)) {
@@ -75,7 +75,7 @@ pub struct Expansion {
     pub density_ratio: f64,
 }
 
-/// Expansion of a flow at `mach` by the turning angle `turn` [rad], positive around a convex corner; an error if an
+/// Expansion of a flow at `mach` by the turning angle `turn` (rad), positive around a convex corner; an error if an
 /// argument is outside its range.
 pub fn expand(mach: f64, turn: f64, gamma: f64) -> Result<Expansion, Error> {
     check_gamma(gamma)?;

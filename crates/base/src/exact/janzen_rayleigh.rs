@@ -148,7 +148,7 @@ mod tests {
         assert!(expected.values().all(|a| a.abs() < 1e-12), "{expected:?}");
     }
 
-    #[test] // found by hand in rational arithmetic: 324/55 r^-10 P7 stands on the right side
+    #[test] // computed by hand in rational arithmetic: 324/55 r^-10 P7 is on the right-hand side
     fn third_term_has_one_logarithm() {
         let third = &sphere_potentials(1.4)[3];
         let logarithms: Vec<_> = third.iter().filter(|t| t.0.2 > 0).collect();

@@ -11,7 +11,7 @@
 //! of attack depends on the lift only, as in lifting-line theory, then 1/a = 1/a_flat − (1 − 1/κ) β/2π
 //! ([`LiftingSurface::with_section`]).
 //!
-//! Limits: small angles of attack, planar wings without twist, no leading-edge suction changes or tip roll-up;
+//! Limits: small angles of attack, planar wings without twist, no tip suction and no roll-up of tip vortices;
 //! compressibility is linear, so that β must be much larger than the thickness. Sources: V. M. Falkner, ARC R&M 1910
 //! (1943); C. E. Lan, J. Aircraft 11 (1974) 518-527; B. Göthert, NACA TM 1105 (1946).
 use super::Error;
@@ -42,7 +42,7 @@ pub struct FlatWing {
     pub root_chord: f64,
     /// Chord distribution along the span.
     pub chord: ChordLaw,
-    /// Sweep angle of the line at the chord fraction `sweep_at`, positive aft [rad].
+    /// Sweep angle of the line at the chord fraction `sweep_at`, positive aft (rad).
     pub sweep: f64,
     /// Chord fraction of the line that has the sweep angle.
     pub sweep_at: f64,

@@ -120,11 +120,11 @@ pub enum Error {
         "deflection of {angle} rad at Mach {mach} detaches the shock, the limit is {limit} rad\nhint: reduce the deflection or raise the Mach number"
     )]
     Detached {
-        /// Deflection [rad].
+        /// Deflection (rad).
         angle: f64,
         /// Mach number ahead of the shock.
         mach: f64,
-        /// Maximum deflection of an attached shock [rad].
+        /// Maximum deflection of an attached shock (rad).
         limit: f64,
     },
     /// An angle is outside the range of the solution.
@@ -134,7 +134,7 @@ pub enum Error {
         what: &'static str,
         /// Range of the angle.
         range: &'static str,
-        /// The value given [rad].
+        /// The value given (rad).
         angle: f64,
     },
     /// The solution is not defined at this point.

@@ -61,11 +61,11 @@ impl Tube {
     /// its range.
     pub fn impulse(&self, speed: f64) -> Result<Impulse, Error> {
         if !(0.0 <= speed && speed.is_finite()) {
-            let what = "speed of a piston that starts at once";
+            let what = "speed of an impulsively started piston";
             return Err(Error::Parameter {
                 what,
                 value: speed,
-                range: "a number that is not negative; use `on_piston`",
+                range: "zero or positive; use `on_piston` for a withdrawn piston",
             });
         }
         let mach = speed / self.sound_speed();
@@ -114,7 +114,7 @@ impl Tube {
         // until the wave breaks
         let reach = |from: f64| piston.place(from) + (c + fast * piston.velocity(from)) * (t - from);
         if x < piston.place(t) || self.breaks_at(piston) <= x {
-            let what = "the gas between the piston and the place where the wave breaks";
+            let what = "the gas between the piston and the position where the wave breaks";
             return Err(Error::Outside { what, x, y: 0.0 });
         }
         let slowest = c - fast * piston.speed.abs();

@@ -60,12 +60,12 @@ impl SphereFlow {
         Ok(Self { mach, gamma, potential })
     }
 
-    /// Ratio of the surface speed to the free-stream speed at the angle `theta` [rad] from a stagnation point.
+    /// Ratio of the surface speed to the free-stream speed at the angle `theta` (rad) from a stagnation point.
     pub fn surface_speed(&self, theta: f64) -> f64 {
         theta.sin() * evaluate(&self.potential, 1.0, theta.cos())[2]
     }
 
-    /// Pressure coefficient on the surface at the angle `theta` [rad] from a stagnation point.
+    /// Pressure coefficient on the surface at the angle `theta` (rad) from a stagnation point.
     pub fn surface_pressure_coefficient(&self, theta: f64) -> f64 {
         isentropic_pressure_coefficient(self.surface_speed(theta), self.mach, self.gamma)
     }
@@ -132,12 +132,12 @@ impl CircleFlow {
         Ok(Self { mach, coefficients })
     }
 
-    /// Ratio of the surface speed to the free-stream speed at the angle `theta` [rad] from a stagnation point.
+    /// Ratio of the surface speed to the free-stream speed at the angle `theta` (rad) from a stagnation point.
     pub fn surface_speed(&self, theta: f64) -> f64 {
         (0..HARMONICS).map(|k| self.coefficients[k] * ((2 * k + 1) as f64 * theta).sin()).sum()
     }
 
-    /// Pressure coefficient on the surface at the angle `theta` [rad] from a stagnation point.
+    /// Pressure coefficient on the surface at the angle `theta` (rad) from a stagnation point.
     pub fn surface_pressure_coefficient(&self, theta: f64) -> f64 {
         isentropic_pressure_coefficient(self.surface_speed(theta), self.mach, CIRCLE_GAMMA)
     }

@@ -45,7 +45,7 @@ pub struct Hodograph {
     /// Streamline parameter k: reciprocal of the stream function, equal to the speed where the streamline crosses y =
     /// 0.
     pub streamline: f64,
-    /// Angle θ of the streamline in [0, π] [rad]; below π/2 for y > 0.
+    /// Angle θ of the streamline in [0, π] (rad); below π/2 for y > 0.
     pub angle: f64,
 }
 
@@ -75,7 +75,7 @@ impl Ringleb {
 
     /// Speed and streamline at `x`, by the inverse map; an error beyond the limit line.
     pub fn hodograph(&self, x: &Vector<2>) -> Result<Hodograph, Error> {
-        let outside = Error::Outside { what: "the region of Ringleb's flow before its limit line", x: x[0], y: x[1] };
+        let outside = Error::Outside { what: "the region of Ringleb's flow up to its limit line", x: x[0], y: x[1] };
         if !x.is_finite() {
             return Err(outside);
         }

@@ -32,7 +32,7 @@ pub struct Jump {
 /// An oblique shock.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ObliqueShock {
-    /// Angle of the shock to the flow ahead [rad].
+    /// Angle of the shock to the flow ahead (rad).
     pub angle: f64,
     /// Ratios across the shock.
     pub jump: Jump,
@@ -60,7 +60,7 @@ pub fn rayleigh_pitot_coefficient(mach: f64, gamma: f64) -> Result<f64, Error> {
     Ok((stagnation - 1.0) / (0.5 * gamma * mach * mach))
 }
 
-/// Deflection θ [rad] of the flow by a shock of the angle `angle` [rad].
+/// Deflection θ (rad) of the flow by a shock of the angle `angle` (rad).
 pub fn deflection(mach: f64, angle: f64, gamma: f64) -> f64 {
     let normal = (mach * angle.sin()).powi(2);
     let above = 2.0 * (normal - 1.0) * angle.cos();
@@ -68,7 +68,7 @@ pub fn deflection(mach: f64, angle: f64, gamma: f64) -> f64 {
     above.atan2(below)
 }
 
-/// Shock angle of maximum deflection [rad], NACA 1135 (168); an error below Mach 1.
+/// Shock angle of maximum deflection (rad), NACA 1135 (168); an error below Mach 1.
 pub fn detachment_shock_angle(mach: f64, gamma: f64) -> Result<f64, Error> {
     check_supersonic("detachment", mach, gamma)?;
     let m2 = mach * mach;
@@ -76,12 +76,12 @@ pub fn detachment_shock_angle(mach: f64, gamma: f64) -> Result<f64, Error> {
     Ok((((gamma + 1.0) / 4.0 * m2 - 1.0 + root) / (gamma * m2)).sqrt().min(1.0).asin())
 }
 
-/// Maximum deflection θ_max of an attached shock [rad]; an error below Mach 1.
+/// Maximum deflection θ_max of an attached shock (rad); an error below Mach 1.
 pub fn detachment_deflection(mach: f64, gamma: f64) -> Result<f64, Error> {
     Ok(deflection(mach, detachment_shock_angle(mach, gamma)?, gamma))
 }
 
-/// Oblique shock that deflects a flow at `mach` by the angle `turn` ≥ 0 [rad]; an error if an argument is outside its
+/// Oblique shock that deflects a flow at `mach` by the angle `turn` ≥ 0 (rad); an error if an argument is outside its
 /// range or the shock is detached.
 pub fn oblique_shock(mach: f64, turn: f64, branch: Branch, gamma: f64) -> Result<ObliqueShock, Error> {
     let steepest = detachment_shock_angle(mach, gamma)?;

@@ -37,7 +37,7 @@ pub fn theodorsen(k: f64) -> Result<Complex64, Error> {
 }
 
 /// Load coefficients of a plate at the reduced frequency `k` (on the half chord), with its axis `a` half chords aft of
-/// mid-chord (−1/2: quarter chord), for the complex amplitudes `pitch` [rad, nose up] and `plunge` (up, divided by the
+/// mid-chord (−1/2: quarter chord), for the complex amplitudes `pitch` (rad, nose up) and `plunge` (up, divided by the
 /// half chord). Returns an error if `k` is negative or not finite.
 pub fn plate(k: f64, a: f64, pitch: Complex64, plunge: Complex64) -> Result<PlateLoads, Error> {
     Ok(plate_loads(Complex64::new(0.0, k), theodorsen(k)?, a, [pitch, plunge]))

@@ -32,7 +32,7 @@ impl IsentropicVortex {
     pub fn new(strength: f64, centre: Vector<2>, velocity: Vector<2>, gamma: f64) -> Result<Self, Error> {
         check_gamma(gamma)?;
         if !(strength.is_finite() && core_temperature_drop(strength, gamma) * 1.0_f64.exp() < 1.0) {
-            let range = "a strength that leaves the core a positive temperature";
+            let range = "a strength for which the temperature in the core is positive";
             return Err(Error::Parameter { what: "strength of the vortex", value: strength, range });
         }
         Ok(Self { strength, centre, velocity, gamma, period: None })

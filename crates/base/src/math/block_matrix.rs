@@ -67,7 +67,7 @@ impl Columns {
         &self.list[start..start + (first[i + 1] - first[i]) as usize]
     }
 
-    /// Memory that is not shared with other owners [bytes].
+    /// Memory that is not shared with other owners (bytes).
     fn bytes(&self) -> usize {
         if Arc::strong_count(&self.list) == 1 { 4 * self.list.len() } else { 0 }
     }
@@ -94,7 +94,7 @@ impl Sweeps {
         Self { b: zero.clone(), x: zero.clone(), old: zero.clone(), side: zero }
     }
 
-    /// Memory in use [bytes].
+    /// Memory in use (bytes).
     pub fn bytes(&self) -> usize {
         16 * self.b.len()
     }
@@ -212,7 +212,7 @@ impl BlockMatrix {
         self.block
     }
 
-    /// Memory in use [bytes].
+    /// Memory in use (bytes).
     pub fn bytes(&self) -> usize {
         self.value.len()
             + self.column.bytes()

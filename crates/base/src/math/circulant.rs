@@ -53,7 +53,7 @@ impl HarmonicSweeps {
         2 * self.harmonics + 1
     }
 
-    /// Memory in use [bytes].
+    /// Memory in use (bytes).
     pub fn bytes(&self) -> usize {
         4 * (4 * self.b.len() + self.inverse.len())
     }

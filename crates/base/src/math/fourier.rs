@@ -17,7 +17,9 @@ pub struct Instances {
 
 /// Error for an even number of instances.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("{count} instances of a period hold no whole number of harmonics\nhint: use an odd number, 2 N + 1")]
+#[error(
+    "{count} instances of a period do not correspond to a whole number of harmonics\nhint: use an odd number, 2 N + 1"
+)]
 pub struct EvenCount {
     /// The number of instances given.
     pub count: usize,
@@ -64,7 +66,7 @@ impl Instances {
         (0..self.count()).map(|n| self.phase(n) / omega).collect()
     }
 
-    /// Phase ωt_n [rad].
+    /// Phase ωt_n (rad).
     fn phase(&self, n: usize) -> f64 {
         2.0 * PI * n as f64 / self.count() as f64
     }
@@ -138,14 +140,14 @@ impl Instances {
         })
     }
 
-    /// Weights of the values in the derivative of the interpolant with respect to ωt, at the phase ωt [rad]. At an
+    /// Weights of the values in the derivative of the interpolant with respect to ωt, at the phase ωt (rad). At an
     /// instance they equal those of [`Self::derivative`], which costs less.
     pub fn derivative_weights(&self, phase: f64) -> Vec<f64> {
         let slope = |x: f64| -2.0 * (1..=self.harmonics).map(|m| m as f64 * (m as f64 * x).sin()).sum::<f64>();
         (0..self.count()).map(|j| slope(phase - self.phase(j)) / self.count() as f64).collect()
     }
 
-    /// Weights of the values in the interpolant at the phase ωt [rad].
+    /// Weights of the values in the interpolant at the phase ωt (rad).
     pub fn weights(&self, phase: f64) -> Vec<f64> {
         (0..self.count()).map(|j| kernel(self.harmonics, phase - self.phase(j)) / self.count() as f64).collect()
     }
@@ -175,7 +177,7 @@ impl Series {
         self.instances().to_values().apply(&self.coefficients)
     }
 
-    /// Value at the phase ωt [rad], eq. (19).
+    /// Value at the phase ωt (rad), eq. (19).
     #[doc(alias = "eq19")]
     pub fn at(&self, phase: f64) -> f64 {
         let h = self.instances().harmonics;

@@ -77,7 +77,7 @@ impl Groups {
         &self.member[self.first[g] as usize..self.first[g + 1] as usize]
     }
 
-    /// Memory in use [bytes].
+    /// Memory in use (bytes).
     pub fn bytes(&self) -> usize {
         4 * (self.of.len() + self.member.len() + self.first.len())
     }

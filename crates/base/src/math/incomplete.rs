@@ -26,7 +26,7 @@ pub struct Incomplete {
 }
 
 impl Incomplete {
-    /// Memory in use [bytes].
+    /// Memory in use (bytes).
     pub fn bytes(&self) -> usize {
         4 * (self.inverse.len() + self.first.len() + self.second.len())
     }

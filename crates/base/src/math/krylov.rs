@@ -74,7 +74,7 @@ impl Gmres {
         }
     }
 
-    /// Memory in use [bytes].
+    /// Memory in use (bytes).
     pub fn bytes(&self) -> usize {
         self.basis.iter().map(Stored::bytes).sum()
     }

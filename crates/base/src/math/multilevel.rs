@@ -142,7 +142,7 @@ impl Multilevel {
         sweep(z, |k| f64::from(matrix.leave(&sweeps.x, k)));
     }
 
-    /// Memory in use [bytes].
+    /// Memory in use (bytes).
     pub fn bytes(&self) -> usize {
         let harmonic_sweeps = |l: &Level| l.harmonic_sweeps.as_ref().map_or(0, HarmonicSweeps::bytes);
         self.levels

@@ -37,7 +37,7 @@ pub fn sums<const N: usize>(n: usize, f: impl Fn(usize) -> [f64; N] + Sync) -> [
 /// Contribution of the chunks of `range` to the sum of `f(i)` over all rows; the range must begin at the limit of a
 /// chunk. The contributions of consecutive ranges, merged in any order, give the result of [`sum`].
 pub fn partial(range: Range<usize>, f: impl Fn(usize) -> f64 + Sync) -> Accumulator {
-    debug_assert!(range.start.is_multiple_of(CHUNK), "row {} is no limit of a chunk", range.start);
+    debug_assert!(range.start.is_multiple_of(CHUNK), "row {} is not the first row of a chunk", range.start);
     let chunk = |c: usize| [abreast(c * CHUNK..((c + 1) * CHUNK).min(range.end), &f)];
     let mut all = [Accumulator::ZERO];
     accumulate(range.start / CHUNK, range.end.div_ceil(CHUNK), &chunk, &mut all);

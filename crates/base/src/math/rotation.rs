@@ -1,4 +1,4 @@
-//! Finite rotations by a rotation vector θ: by the angle |θ| [rad] about the direction of θ, right-handed.
+//! Finite rotations by a rotation vector θ: by the angle |θ| (rad) about the direction of θ, right-handed.
 //!
 //! With s = |θ|² and Stumpff's functions c_k(s) = Σ_n (−s)ⁿ/(2n + k)! (c₀ = cos|θ|, c₁ = sin|θ|/|θ|), which are smooth
 //! at s = 0, Rodrigues' formula is R x = x + c₁ θ×x + c₂ θ×(θ×x). The angular velocity in body axes is ω = T θ', T y =

@@ -2,8 +2,8 @@
 //!
 //! A Delaunay tetrahedralisation by incremental insertion (Bowyer 1981, doi:10.1093/comjnl/24.2.162; Watson 1981,
 //! doi:10.1093/comjnl/24.2.167) with exact predicates. Points of a lattice lie on common spheres, which makes exact
-//! predicates slow and tetrahedra flat. Every point is therefore first moved by a millionth of its spacing, always in
-//! the same direction, and tetrahedra that are still flat are omitted.
+//! predicates slow and tetrahedra flat. Every point is therefore first moved by at most a millionth of its
+//! spacing, by reproducible random numbers, and tetrahedra that are still flat are omitted.
 use simple_delaunay_lib::delaunay_3d::delaunay_struct_3d::DelaunayStructure3D;
 use simple_delaunay_lib::delaunay_3d::simplicial_struct_3d::Node;
 

@@ -8,7 +8,7 @@
 //! with H = r₀ z/(r₀ + z) for the geometric altitude z (U.S. Standard Atmosphere, 1976, NOAA-S/T 76-1562; up to 32 km
 //! it equals those of ISO 2533 and ICAO). Range: from 5 km below to 86 km above sea level.
 
-/// Geopotential altitude of the base of each layer [m], and temperature gradient in the layer [K/m].
+/// Geopotential altitude of the base of each layer (m), and temperature gradient in the layer [K/m].
 const LAYERS: [(f64, f64); 7] = [
     (0.0, -6.5e-3),
     (11_000.0, 0.0),
@@ -18,7 +18,7 @@ const LAYERS: [(f64, f64); 7] = [
     (51_000.0, -2.8e-3),
     (71_000.0, -2e-3),
 ];
-/// Temperature [K] and pressure [Pa] at sea level.
+/// Temperature (K) and pressure (Pa) at sea level.
 const SEA: (f64, f64) = (288.15, 101_325.0);
 /// Standard gravity [m/s²].
 const GRAVITY: f64 = 9.806_65;
@@ -26,17 +26,17 @@ const GRAVITY: f64 = 9.806_65;
 pub const GAS_CONSTANT: f64 = 8314.32 / 28.9644;
 /// Ratio of specific heats of air.
 pub const GAMMA: f64 = 1.4;
-/// Radius of the earth in the definition of the geopotential altitude [m].
+/// Radius of the earth in the definition of the geopotential altitude (m).
 const RADIUS: f64 = 6_356_766.0;
-/// Range of geometric altitudes of this model [m].
+/// Range of geometric altitudes of this model (m).
 pub const RANGE: [f64; 2] = [-5_000.0, 86_000.0];
 
 /// State of the air at an altitude.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Air {
-    /// Temperature [K]; above 80 km the molecular-scale temperature, for the mean molecular mass at sea level.
+    /// Temperature (K); above 80 km the molecular-scale temperature, for the mean molecular mass at sea level.
     pub temperature: f64,
-    /// Pressure [Pa].
+    /// Pressure (Pa).
     pub pressure: f64,
     /// Density [kg/m³].
     pub density: f64,
@@ -67,7 +67,7 @@ impl Layer {
             }
     }
 
-    /// Geopotential altitude [m] at which the pressure is `pressure` [Pa].
+    /// Geopotential altitude (m) at which the pressure is `pressure` (Pa).
     fn height(&self, pressure: f64) -> f64 {
         let (part, fall) = (self.pressure / pressure, GRAVITY / GAS_CONSTANT);
         self.base
@@ -87,7 +87,7 @@ fn layers() -> [Layer; LAYERS.len()] {
     })
 }
 
-/// State of the air at the geometric altitude `z` [m]; `None` outside [`RANGE`].
+/// State of the air at the geometric altitude `z` (m); `None` outside [`RANGE`].
 pub fn at(z: f64) -> Option<Air> {
     if !(RANGE[0]..=RANGE[1]).contains(&z) {
         return None;
@@ -99,7 +99,7 @@ pub fn at(z: f64) -> Option<Air> {
     Some(Air { temperature, pressure, density: pressure / heat, sound_speed: (GAMMA * heat).sqrt() })
 }
 
-/// Geometric altitude [m] at which the pressure is `pressure` [Pa]; `None` outside [`RANGE`].
+/// Geometric altitude (m) at which the pressure is `pressure` (Pa); `None` outside [`RANGE`].
 pub fn altitude(pressure: f64) -> Option<f64> {
     let all = layers();
     let layer = all.iter().rev().find(|layer| pressure <= layer.pressure).unwrap_or(&all[0]);

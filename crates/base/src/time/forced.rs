@@ -61,12 +61,12 @@ pub struct Told {
 pub enum NotFound {
     /// A linear system is singular.
     #[error(
-        "the linear systems of the periodic motion have no solution: the structure vibrates by itself at a harmonic of its frequency, or nothing holds it\nhint: add damping (`damping`, `stiffness_damping`) or supports, or take another frequency"
+        "the linear systems of the periodic motion have no solution: a harmonic of the excitation is a natural frequency of the structure, or the structure has no supports\nhint: add damping (`damping`, `stiffness_damping`) or supports, or choose another frequency"
     )]
     Singular,
     /// Newton's method does not converge.
     #[error(
-        "no periodic motion was found beyond {:.1} % of the load, after {iterations} iterations{}\nhint: the motion may fold back there, as near the resonance of stiffening structures: take more damping (`damping`, `stiffness_damping`), another frequency or a smaller load, or march with `[time.newmark]`",
+        "no periodic motion was found beyond {:.1} % of the load, after {iterations} iterations{}\nhint: the solution branch may have a turning point there, as near the resonance of stiffening structures: use more damping (`damping`, `stiffness_damping`), another frequency or a smaller load, or march in time with `[time.newmark]`",
         100.0 * .reached, .fault.as_ref().map(|f| format!(": {f}")).unwrap_or_default()
     )]
     Stuck {
@@ -79,7 +79,7 @@ pub enum NotFound {
     },
     /// The maximum number of iterations is reached.
     #[error(
-        "no periodic motion was found in {iterations} iterations, only that under {:.1} % of the load\nhint: raise `time.harmonics.iterations` and go on with `alula resume`",
+        "no periodic motion was found in {iterations} iterations; the search reached {:.1} % of the load\nhint: raise `time.harmonics.iterations` and continue with `alula resume`",
         100.0 * .reached
     )]
     Exhausted {
@@ -161,7 +161,7 @@ impl<'v, 'a, S: Mechanical> Forced<'v, 'a, S> {
         let level = rms(z);
         match level.is_finite() {
             true => Ok(Tried { level, left: if scale > 0.0 { largest / scale } else { 0.0 } }),
-            false => Err("displacements are no numbers".into()),
+            false => Err("a displacement is not finite".into()),
         }
     }
 

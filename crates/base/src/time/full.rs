@@ -83,7 +83,7 @@ impl Full {
         }
     }
 
-    /// Memory in use [bytes].
+    /// Memory in use (bytes).
     pub fn held(&self) -> usize {
         8 * (self.matrix.len() + self.right.len() + self.factors.as_ref().map_or(0, |f| f.len() * f.len()))
     }

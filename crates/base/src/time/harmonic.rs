@@ -118,7 +118,7 @@ impl<'a, S: System> HarmonicBalance<'a, S> {
         all
     }
 
-    /// Writes the state at the phase ωt [rad] to `out`.
+    /// Writes the state at the phase ωt (rad) to `out`.
     pub fn at_phase(&self, u: &[f64], phase: f64, out: &mut [f64]) {
         self.combine(u, &self.held.weights(phase), out);
     }
@@ -218,7 +218,7 @@ impl<'a, S: System> HarmonicBalance<'a, S> {
         f(&Instant::formula(phase / self.omega, &terms).with(now))
     }
 
-    /// Phases [rad] of the instances where R is evaluated.
+    /// Phases (rad) of the instances where R is evaluated.
     fn phases(&self) -> Vec<f64> {
         self.times().into_iter().map(|t| t * self.omega).collect()
     }

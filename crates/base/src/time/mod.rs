@@ -101,7 +101,7 @@ pub struct Cost {
     pub linear: u32,
     /// Number of iterations within the last step.
     pub inner: u32,
-    /// Memory in use [bytes].
+    /// Memory in use (bytes).
     pub bytes: usize,
     /// Number of time steps that did not reach the required reduction of the residual.
     pub unconverged: u32,
@@ -148,11 +148,12 @@ pub trait Integrator<S: System> {
 }
 
 /// Hint for a state that is not physical.
-const UNSOUND: &str = "the state that this goes on from is damaged: begin the run again";
+const UNSOUND: &str = "the initial state of this computation is damaged: start the run again from the beginning";
 
 /// Hint for motion that leaves a particle without suitable neighbours.
-pub const CROWDED: &str = "bodies come too close to one another or to a side of the domain, or move too far for the particles \
-                       between them; give them more room, less motion, or `motion.particles = \"rigid\"` if there is one body";
+pub const CROWDED: &str = "bodies come too close to one another or to a boundary of the domain, or move too far for the \
+                       particles between them; increase their distance, reduce their motion, or set \
+                       `motion.particles = \"rigid\"` if there is only one body";
 
 /// Error that ends an integration.
 #[derive(Debug, thiserror::Error)]

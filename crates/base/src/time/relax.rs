@@ -386,7 +386,7 @@ impl<'a, S: Implicit> Relax<'a, S> {
         self.norm <= ROUND_OFF
     }
 
-    /// Memory of the implicit solver [bytes].
+    /// Memory of the implicit solver (bytes).
     pub fn bytes(&self) -> usize {
         8 * (5 * self.u.len() + 2 * self.rate.len())
             + self.preconditioning.as_ref().map_or(0, Preconditioning::bytes::<S>)

@@ -247,7 +247,7 @@ impl<'a, S: Mechanical> GeneralisedAlpha<'a, S> {
             self.cost.linear += linear as u32;
             u.iter_mut().zip(&change).for_each(|(u, c)| *u += c);
         }
-        let reason = format!("Newton's method did not get to the end of a step of {step:.3e} at time {end:.6e}");
+        let reason = format!("Newton's method did not converge in a step of {step:.3e} to time {end:.6e}");
         Err(Fault { particle: 0, place: Vec::new(), reason })
     }
 
@@ -323,7 +323,7 @@ impl<S: Mechanical> Integrator<S> for GeneralisedAlpha<'_, S> {
                     });
                 }
                 Err(fault) if halved == HALVED => {
-                    let hint = "lower `time.newmark.step`, or look whether the load is what it should be";
+                    let hint = "lower `time.newmark.step`, or check the loads and their units";
                     return Err(TimeError::Fault { fault, iteration: self.past.iteration + 1, hint });
                 }
                 Err(_) => {
@@ -416,7 +416,7 @@ impl<'a, S: Mechanical> Equilibrium<'a, S> {
             u.iter_mut().zip(&change).for_each(|(u, c)| *u += c);
         }
         let reason = format!(
-            "Newton's method found no equilibrium under {:.1} % of the load: forces are left to {:.1e} of the largest",
+            "Newton's method found no equilibrium under {:.1} % of the load: the residual is {:.1e} of the largest force",
             100.0 * load,
             self.residual
         );
@@ -468,7 +468,7 @@ impl<S: Mechanical> Integrator<S> for Equilibrium<'_, S> {
                 }
                 Err(fault) if halved == HALVED => {
                     self.u = before;
-                    let hint = "take more `load_steps`, hold the body in more places, or look for buckling";
+                    let hint = "raise `load_steps`, add supports, or check whether the body buckles";
                     return Err(TimeError::Fault { fault, iteration: self.past.iteration + 1, hint });
                 }
                 Err(_) => {

@@ -139,7 +139,7 @@ impl<S: Mechanical> Integrator<S> for Symplectic<'_, S> {
             (self.past.time, self.past.iteration) = (start, self.past.iteration - 1);
             // a later march starts from the forces of the stored state
             self.evaluate(0.0);
-            let hint = "lower `time.explicit.cfl`, or look whether the load is what it should be";
+            let hint = "lower `time.explicit.cfl`, or check the loads and their units";
             return Err(TimeError::Fault { fault, iteration: self.past.iteration + 1, hint });
         }
         Ok(Step { iteration: self.past.iteration, time: end, cfl: self.plan.cfl, residual: 1.0, linear: 0 })

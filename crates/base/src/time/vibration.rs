@@ -142,7 +142,7 @@ impl<'a, S: Mechanical> Vibration<'a, S> {
         all
     }
 
-    /// Displacement, velocity and acceleration at the phase ωt [rad].
+    /// Displacement, velocity and acceleration at the phase ωt (rad).
     pub fn at_phase(&self, u: &[f64], phase: f64) -> Motion {
         let weights = self.periodic.held.weights(phase);
         let velocity = self.rate(u);
@@ -287,7 +287,7 @@ fn elastic(damping: Damping, omega: f64) -> Complex64 {
     Complex64::new(1.0, damping.stiffness * omega)
 }
 
-/// Complex quotient a/b, with a and the result as [real part, imaginary part].
+/// Complex quotient a/b, with a and the result as (real part, imaginary part).
 fn quotient(a: [f64; 2], b: Complex64) -> [f64; 2] {
     let c = Complex64::new(a[0], a[1]) / b;
     [c.re, c.im]

@@ -10,7 +10,7 @@ use super::tree::Tree;
 use crate::math::parallel::{sweep_each, sweep_each_chunk};
 
 /// Minimum number of parts into which the work is divided, if there is enough, and the minimum work of a part
-/// [multiplications].
+/// (multiplications).
 const PIECES: f64 = 16.0;
 const PIECE: f64 = 1e6;
 /// Number of right-hand sides that are solved together.

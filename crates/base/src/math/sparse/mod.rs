@@ -146,7 +146,7 @@ pub struct ComplexFactors {
 }
 
 impl ComplexFactors {
-    /// Memory of the matrix that was factored [bytes]; its factors need several times as much.
+    /// Memory of the matrix that was factored (bytes); its factors need several times as much.
     pub fn bytes(&self) -> usize {
         let entries = 2 * self.matrix.matrix.value.len() - self.matrix.diagonal.len();
         entries * (size_of::<Complex64>() + size_of::<usize>())
@@ -192,7 +192,7 @@ pub struct Factors {
 }
 
 impl Factors {
-    /// Memory of the matrix that was factored [bytes]; its factors need several times as much.
+    /// Memory of the matrix that was factored (bytes); its factors need several times as much.
     pub fn bytes(&self) -> usize {
         self.entries * (size_of::<f64>() + size_of::<usize>())
     }
