@@ -33,9 +33,9 @@ const DIFFERENCE: f64 = 1e-6;
 /// One term c f(t) of a difference formula for ∂f/∂t.
 #[derive(Clone, Copy, Debug)]
 pub struct Term<'a> {
-    /// Coefficient c.
+    /// Coefficient c [1/time] of the term.
     pub coefficient: f64,
-    /// Time t.
+    /// Time t of the term.
     pub time: f64,
     /// Coordinates that determine the frame at that time, see [`System::placing`]; empty if all motion is prescribed.
     pub coordinates: &'a [f64],
@@ -73,7 +73,7 @@ pub enum Rate<'a> {
 /// A time at which a frame is requested, with the rule for particle velocities.
 #[derive(Clone, Copy, Debug)]
 pub struct Instant<'a> {
-    /// Time.
+    /// Time of the frame.
     pub time: f64,
     /// Coordinates that determine the frame at that time, see [`System::placing`]; empty if all motion is prescribed.
     pub coordinates: &'a [f64],
@@ -245,13 +245,13 @@ pub trait System: Sync {
 /// State of a structure at one time, at which forces are evaluated.
 #[derive(Clone, Copy, Debug)]
 pub struct Moment<'a> {
-    /// Time.
+    /// Time at which forces are evaluated.
     pub time: f64,
     /// Time since the last update of the internal variables; 0 for a single instant.
     pub step: f64,
-    /// Displacements.
+    /// Displacements of all degrees of freedom.
     pub displacement: &'a [f64],
-    /// Velocities.
+    /// Velocities of all degrees of freedom.
     pub velocity: &'a [f64],
     /// Internal variables of the materials.
     pub history: &'a [f64],

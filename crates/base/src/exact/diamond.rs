@@ -15,7 +15,7 @@ use super::{Error, check_gamma};
 /// Flow on one panel of the airfoil.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Panel {
-    /// Mach number.
+    /// Mach number on the panel.
     pub mach: f64,
     /// Ratio of the pressure to that of the free stream.
     pub pressure: f64,

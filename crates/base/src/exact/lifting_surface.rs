@@ -96,7 +96,7 @@ impl FlatWing {
         self.sweep_at * self.root_chord + y * self.sweep.tan() + (part - self.sweep_at) * self.chord_at(y)
     }
 
-    /// Planform area.
+    /// Planform area of the wing.
     pub fn area(&self) -> f64 {
         self.span
             * self.root_chord

@@ -42,9 +42,9 @@ pub mod vortex_far_field;
 /// State of the gas at one point.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct GasState<const D: usize, S = f64> {
-    /// Density.
+    /// Density of the gas.
     pub density: S,
-    /// Velocity.
+    /// Velocity of the gas.
     pub velocity: Vector<D, S>,
     /// Static pressure.
     pub pressure: S,

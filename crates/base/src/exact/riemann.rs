@@ -23,11 +23,11 @@ const RETREAT: f64 = 1e-3;
 /// State of a one-dimensional gas.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct State {
-    /// Density.
+    /// Density of the gas.
     pub density: f64,
-    /// Velocity.
+    /// Velocity of the gas.
     pub velocity: f64,
-    /// Pressure.
+    /// Pressure of the gas.
     pub pressure: f64,
 }
 

@@ -21,9 +21,9 @@ pub struct Jump {
     pub mach: f64,
     /// Static pressure ratio.
     pub pressure: f64,
-    /// Density ratio.
+    /// Ratio of the densities.
     pub density: f64,
-    /// Temperature ratio.
+    /// Ratio of the temperatures.
     pub temperature: f64,
     /// Stagnation pressure ratio, below 1 because of the loss.
     pub stagnation_pressure: f64,

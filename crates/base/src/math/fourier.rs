@@ -205,7 +205,7 @@ impl Matrix {
         Self { columns, entries }
     }
 
-    /// Row `i`.
+    /// Values of row `i`.
     pub fn row(&self, i: usize) -> &[f64] {
         &self.entries[i * self.columns..(i + 1) * self.columns]
     }

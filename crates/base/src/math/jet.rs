@@ -26,7 +26,7 @@ pub trait Scalar:
     /// The composition f(self), where `f` returns value, first and second derivative for a real number.
     fn map(self, f: impl FnOnce(f64) -> [f64; 3]) -> Self;
 
-    /// Sine.
+    /// Sine of the number (an angle in radians).
     #[inline(always)]
     fn sin(self) -> Self {
         self.map(|x| {
@@ -35,7 +35,7 @@ pub trait Scalar:
         })
     }
 
-    /// Cosine.
+    /// Cosine of the number (an angle in radians).
     #[inline(always)]
     fn cos(self) -> Self {
         self.map(|x| {
@@ -44,7 +44,7 @@ pub trait Scalar:
         })
     }
 
-    /// 1/x.
+    /// Reciprocal 1/x of the number.
     #[inline(always)]
     fn inverse(self) -> Self {
         self.map(|x| [1.0 / x, -1.0 / (x * x), 2.0 / (x * x * x)])
@@ -59,19 +59,19 @@ pub trait Scalar:
         })
     }
 
-    /// Power xⁿ.
+    /// Power xⁿ of the number x.
     #[inline(always)]
     fn powf(self, n: f64) -> Self {
         self.map(|x| [x.powf(n), n * x.powf(n - 1.0), n * (n - 1.0) * x.powf(n - 2.0)])
     }
 
-    /// Exponential eˣ.
+    /// Exponential eˣ of the number x.
     #[inline(always)]
     fn exp(self) -> Self {
         self.map(|x| [x.exp(); 3])
     }
 
-    /// Natural logarithm.
+    /// Natural logarithm of the number.
     #[inline(always)]
     fn log(self) -> Self {
         self.map(|x| [x.ln(), 1.0 / x, -1.0 / (x * x)])
@@ -132,11 +132,11 @@ impl Scalar for f64 {
 /// A value with its first and second derivative.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Jet {
-    /// Value.
+    /// Value x of the function.
     pub value: f64,
-    /// First derivative.
+    /// First derivative x′ of the function.
     pub first: f64,
-    /// Second derivative.
+    /// Second derivative x″ of the function.
     pub second: f64,
 }
 

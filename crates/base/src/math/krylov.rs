@@ -208,11 +208,11 @@ fn combine(w: &mut [f64], basis: &[Stored], y: impl Fn(usize) -> f64 + Sync) {
 /// A view of stored numbers.
 #[derive(Clone, Copy, Debug)]
 pub enum Numbers<'a> {
-    /// Single precision.
+    /// Values in single precision.
     Single(&'a [f32]),
     /// Upper halves of numbers in single precision.
     Halves(&'a [u16]),
-    /// Double precision.
+    /// Values in double precision.
     Double(&'a [f64]),
 }
 
@@ -239,7 +239,7 @@ impl Numbers<'_> {
 
 /// A stored basis vector.
 enum Stored {
-    /// Single precision.
+    /// Values in single precision.
     Single(Vec<f32>),
     /// Upper halves of numbers in single precision.
     Halves(Vec<u16>),

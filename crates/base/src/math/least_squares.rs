@@ -22,7 +22,7 @@ const RANK_TOLERANCE: f64 = 1e-10;
 /// Factorisation that a fit used.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Method {
-    /// Normal equations.
+    /// Cholesky factorisation of the normal equations.
     Cholesky,
     /// Orthogonal factorisation of the rows.
     Qr,

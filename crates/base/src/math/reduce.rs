@@ -165,7 +165,7 @@ pub fn dot(a: &[f64], b: &[f64]) -> f64 {
     sum(a.len(), |i| a[i] * b[i])
 }
 
-/// Euclidean norm.
+/// Euclidean norm of a vector.
 pub fn norm(a: &[f64]) -> f64 {
     dot(a, a).sqrt()
 }

@@ -26,7 +26,7 @@ pub fn cholesky(matrix: &[f64], n: usize) -> Option<Vec<f64>> {
 /// Eigenvalues of a symmetric matrix in ascending order, with unit eigenvectors.
 #[derive(Clone, Debug)]
 pub struct Eigen {
-    /// Eigenvalues.
+    /// Eigenvalues in ascending order.
     pub values: Vec<f64>,
     /// Eigenvector of each eigenvalue.
     pub vectors: Vec<Vec<f64>>,

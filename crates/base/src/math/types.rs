@@ -28,13 +28,13 @@ impl<const D: usize> Vector<D> {
         if n > 0.0 { *self * (1.0 / n) } else { *self }
     }
 
-    /// Component-wise minimum.
+    /// Component-wise minimum of two vectors.
     #[inline]
     pub fn min(&self, other: &Self) -> Self {
         Self::from_fn(|d| self.0[d].min(other.0[d]))
     }
 
-    /// Component-wise maximum.
+    /// Component-wise maximum of two vectors.
     #[inline]
     pub fn max(&self, other: &Self) -> Self {
         Self::from_fn(|d| self.0[d].max(other.0[d]))
@@ -90,7 +90,7 @@ impl<const D: usize, S: Scalar> Vector<D, S> {
         Self([value; D])
     }
 
-    /// Inner product.
+    /// Inner product with another vector.
     #[inline(always)]
     pub fn dot(&self, other: &Self) -> S {
         let mut sum = self.0[0] * other.0[0];
@@ -122,7 +122,7 @@ impl<const D: usize, S: Scalar> Vector<D, S> {
         Vector::from_fn(|d| self.0[d].value())
     }
 
-    /// Euclidean length.
+    /// Euclidean length of the vector.
     #[inline(always)]
     pub fn norm(&self) -> S {
         self.norm_squared().sqrt()

@@ -26,7 +26,7 @@ pub struct Newtonian {
 /// Velocity, temperature and their gradients at one point, from which viscous fluxes follow.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Slopes<const D: usize, S = f64> {
-    /// Velocity.
+    /// Velocity of the gas.
     pub velocity: Vector<D, S>,
     /// Temperature θ = γp/ρ.
     pub temperature: S,

@@ -87,7 +87,7 @@ impl Field {
 /// A field with the ranges of its unknowns and rows in the whole state.
 #[derive(Clone, Debug)]
 pub struct Placed {
-    /// The field.
+    /// The field itself.
     pub field: Field,
     /// Range of its unknowns in the state.
     pub unknowns: Range<usize>,

@@ -4,7 +4,7 @@ use crate::math::multilevel::Cycle;
 /// Method of relaxation to a steady state.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Method {
-    /// Newton-GMRES.
+    /// Newton-GMRES (Newton-Krylov) method.
     NewtonKrylov,
     /// Sweeps of the preconditioner alone (LU-SGS).
     Sweeps,
@@ -15,7 +15,7 @@ pub enum Method {
 /// Parameters of a relaxation.
 #[derive(Clone, Copy, Debug)]
 pub struct Control {
-    /// Method.
+    /// Method of relaxation.
     pub method: Method,
     /// Courant number at the start.
     pub cfl: f64,

@@ -37,7 +37,7 @@ pub enum Method {
 /// Parameters of an explicit march.
 #[derive(Clone, Copy, Debug)]
 pub struct Plan {
-    /// Method.
+    /// Runge-Kutta method of the march.
     pub method: Method,
     /// Courant number, from which the step length follows.
     pub cfl: f64,

@@ -116,7 +116,7 @@ pub struct Forced<'v, 'a, S: Mechanical> {
 
 /// Evaluation of a trial state.
 struct Tried {
-    /// ‖P⁻¹r‖.
+    /// Norm ‖P⁻¹r‖ of the preconditioned residual.
     level: f64,
     /// Maximum component of r relative to the maximum force.
     left: f64,

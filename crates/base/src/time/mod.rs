@@ -24,7 +24,7 @@ use relax::Resume;
 pub struct Step {
     /// Number of iterations or steps since the start.
     pub iteration: u32,
-    /// Physical time.
+    /// Physical time at the end of the step; 0 in a relaxation.
     pub time: f64,
     /// Courant number of the step.
     pub cfl: f64,
@@ -37,9 +37,9 @@ pub struct Step {
 /// Data, beside the state, that a march needs to continue.
 #[derive(Clone, Debug, Default)]
 pub struct Past {
-    /// Time reached.
+    /// Time reached so far.
     pub time: f64,
-    /// Steps taken.
+    /// Number of steps taken.
     pub iteration: u32,
     /// Length of the last step.
     pub last: f64,
@@ -117,7 +117,7 @@ pub struct Standing<'a, S: System> {
     pub frame: &'a S::Frame,
     /// Working storage, which observers may use for evaluations.
     pub work: &'a mut S::Work,
-    /// State.
+    /// State that belongs to the frame.
     pub state: &'a [f64],
 }
 

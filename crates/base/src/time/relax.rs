@@ -76,7 +76,7 @@ pub struct Relax<'a, S: Implicit> {
     pub first_norm: f64,
     /// Norm of the latest residual.
     pub norm: f64,
-    /// State u.
+    /// Current state u.
     pub u: Vec<f64>,
     frame: S::Frame,
     /// Additional frame for trial states, if frames depend on the state.

@@ -44,11 +44,11 @@ pub struct Vibration<'a, S: Mechanical> {
 /// Motion at one time.
 #[derive(Clone, Debug)]
 pub struct Motion {
-    /// Displacements.
+    /// Displacements of all degrees of freedom.
     pub displacement: Vec<f64>,
-    /// Velocities.
+    /// Velocities of all degrees of freedom.
     pub velocity: Vec<f64>,
-    /// Accelerations.
+    /// Accelerations of all degrees of freedom.
     pub acceleration: Vec<f64>,
 }
 
@@ -76,7 +76,7 @@ impl<'a, S: Mechanical> Vibration<'a, S> {
         }
     }
 
-    /// The structure.
+    /// The structure whose motion is periodic.
     pub fn system(&self) -> &'a S {
         self.system
     }

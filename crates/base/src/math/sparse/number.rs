@@ -12,7 +12,7 @@ pub(super) const TILE: usize = 32;
 pub(super) trait Number:
     Copy + Send + Sync + Add<Output = Self> + AddAssign + Sub<Output = Self> + SubAssign + Mul<Output = Self> + 'static
 {
-    /// Zero.
+    /// The number zero.
     const ZERO: Self;
     /// Number of rows of a strip, a multiple of [`WIDE`].
     const ROWS: usize;

@@ -64,7 +64,7 @@ struct Point<'a> {
 
 /// Trial state, before plastic flow.
 struct Trial<S> {
-    /// dev b̄.
+    /// Deviator dev b̄ of the trial state.
     shape: Tensor<S>,
     /// ⅓ tr b̄.
     mean: S,
@@ -72,7 +72,7 @@ struct Trial<S> {
     back: Tensor<S>,
     /// Direction n of ξ.
     direction: Tensor<S>,
-    /// |ξ|.
+    /// Norm |ξ| of the relative stress.
     norm: S,
     /// Third invariant tr n³ of the direction.
     cubic: S,
