@@ -1,4 +1,4 @@
-//! The ground floor: what knows neither a case nor a cloud.
+//! Foundations without cases or clouds: mathematics, exact solutions, physics at a point, and integrators in time.
 pub mod exact;
 pub mod math;
 pub mod physics;

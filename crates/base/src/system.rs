@@ -1,15 +1,18 @@
-//! The seam between space and time.
+//! Interface between the discretisation in space and the integrators in time.
 //!
-//! Space gives a semi-discrete system dU/dt = R(t, U); time integrates it without knowing what it means. The unknowns are one
-//! flat slice that is cut into *fields*: the gas, a structure's coordinates, bodies of particles and what
-//! their materials remember. What depends on time and coordinates but is not evolved (positions, velocities, normals and weights of moving
-//! particles) is one value, the *frame*: an evaluation reads it and changes nothing in it. Marching holds one frame, harmonic balance one per time instance.
+//! The discretisation in space gives a semi-discrete system dU/dt = R(t, U); the integrators know nothing of its
+//! physics. The unknowns are one flat slice, divided into *fields*: the gas, the coordinates of a structure, the
+//! displacements of solids and the internal variables of their materials. Data that depend on time and coordinates but
+//! are not integrated (positions, velocities, normals and weights of moving particles) form the *frame*, which an
+//! evaluation of R reads and does not change. A march keeps one frame; harmonic balance keeps one for each time
+//! instance.
 //!
-//! Particles move where prescribed motions or unknown *coordinates* of bodies put them. Their velocities follow from positions
-//! by the difference formula of the state itself, Σ c_k x(t_k, U_k): an [`Instant`] carries that formula with times and
-//! coordinates, so that uniform flow stays uniform to round-off whatever moves the cloud.
+//! Particles follow prescribed motions or the unknown *coordinates* of bodies. Particle velocities are computed from
+//! positions by the same difference formula as the time derivative of the state, Σ c_k x(t_k, U_k). An [`Instant`]
+//! therefore carries this formula with its times and coordinates, so that uniform flow stays uniform to round-off on a
+//! moving cloud.
 //!
-//! How the linear systems of an implicit method are preconditioned is a thing of its own, [`Preconditioner`].
+//! The trait [`Preconditioner`] describes how the linear systems of an implicit method are preconditioned.
 use std::ops::Range;
 
 use crate::math::fourier::Instances;
@@ -23,66 +26,69 @@ pub use field::{Field, Name, Placed, Ranges, placed, rows, rows_of, unknowns, un
 
 mod field;
 
-/// Change of the state in derivatives that are differences, over its size, and of coordinates, in lengths of the case and radians.
+/// Step of difference quotients: the change of the state relative to its norm, and the change of coordinates in lengths
+/// of the case or in radians.
 const DIFFERENCE: f64 = 1e-6;
 
 /// One term c f(t) of a difference formula for ∂f/∂t.
 #[derive(Clone, Copy, Debug)]
 pub struct Term<'a> {
-    /// Coefficient c.
+    /// Coefficient c [1/time] of the term.
     pub coefficient: f64,
-    /// Time t.
+    /// Time t of the term.
     pub time: f64,
-    /// The unknowns that place the frame at that time, see [`System::placing`]; empty where motion is prescribed.
+    /// Coordinates that determine the frame at that time, see [`System::placing`]; empty if all motion is prescribed.
     pub coordinates: &'a [f64],
 }
 
 impl Term<'_> {
-    /// A term of a formula in time alone.
+    /// A term of a formula for prescribed motion, without coordinates.
     pub const fn of_time(coefficient: f64, time: f64) -> Self {
         Self { coefficient, time, coordinates: &[] }
     }
 }
 
-/// How velocities follow from positions.
+/// How particle velocities are computed from positions.
 #[derive(Clone, Copy, Debug)]
 pub enum Rate<'a> {
-    /// Everything is looked at as if it stood still: steady flow.
+    /// All particle velocities are zero: steady flow.
     Still,
-    /// Part of the way through a step of an explicit method: particles go straight from where they are at its start to where
-    /// they are at its end.
+    /// Within a step of an explicit method: particles move with constant velocity from their positions at the start of
+    /// the step to those at its end.
     Within {
         /// Time at the start of the step.
         start: f64,
         /// Length of the step.
         step: f64,
-        /// Part of the step that has passed, 0 to 1.
+        /// Elapsed fraction of the step, 0 to 1.
         fraction: f64,
-        /// The unknowns that place the frame at the start and at the end; empty where all motion is prescribed.
+        /// Coordinates that determine the frame at the start and at the end of the step; empty if all motion is
+        /// prescribed.
         ends: [&'a [f64]; 2],
     },
-    /// By a difference formula; its first term is that of the time at which the frame is wanted, where it has one.
+    /// Difference formula. If it has a term at the time of the requested frame, that term comes first.
     Formula(&'a [Term<'a>]),
 }
 
-/// A time at which a frame is wanted.
+/// A time at which a frame is requested, with the rule for particle velocities.
 #[derive(Clone, Copy, Debug)]
 pub struct Instant<'a> {
-    /// Time.
+    /// Time of the frame.
     pub time: f64,
-    /// The unknowns that place the frame then, see [`System::placing`].
+    /// Coordinates that determine the frame at that time, see [`System::placing`]; empty if all motion is prescribed.
     pub coordinates: &'a [f64],
-    /// How velocities follow.
+    /// How particle velocities are computed.
     pub rate: Rate<'a>,
 }
 
 impl<'a> Instant<'a> {
-    /// A time at which everything stands still.
+    /// An instant at `time` with zero particle velocities and no coordinates.
     pub const fn still(time: f64) -> Self {
         Self { time, coordinates: &[], rate: Rate::Still }
     }
 
-    /// Part `fraction` of the way through the step of length `step` that begins at `start`.
+    /// The instant at the fraction `fraction` of the step of length `step` that begins at `start`, for prescribed
+    /// motion.
     pub fn within(start: f64, step: f64, fraction: f64) -> Self {
         Self {
             time: start + step * fraction,
@@ -91,76 +97,80 @@ impl<'a> Instant<'a> {
         }
     }
 
-    /// The same where unknowns place the frame, those at the start and at the end of the step.
+    /// The instant at the fraction `fraction` of a step, as [`Instant::within`], where `ends` holds the coordinates at
+    /// the start and at the end of the step.
     pub fn between(start: f64, step: f64, fraction: f64, ends: [&'a [f64]; 2]) -> Self {
         Self { time: start + step * fraction, coordinates: ends[1], rate: Rate::Within { start, step, fraction, ends } }
     }
 
-    /// A time at which ∂/∂t is `formula`.
+    /// An instant at `time` at which ∂/∂t is approximated by `formula`.
     pub const fn formula(time: f64, formula: &'a [Term<'a>]) -> Self {
         Self { time, coordinates: &[], rate: Rate::Formula(formula) }
     }
 
-    /// The same with the unknowns that place the frame.
+    /// This instant with the coordinates `coordinates`.
     pub const fn with(self, coordinates: &'a [f64]) -> Self {
         Self { coordinates, ..self }
     }
 }
 
-/// A semi-discrete system dU/dt = R(t, U), eq. (16): the only thing an integrator ever sees.
+/// A semi-discrete system dU/dt = R(t, U), eq. (16): the interface on which all integrators rest.
 #[doc(alias = "eq16")]
 pub trait System: Sync {
-    /// What depends on time and state but is not evolved.
+    /// Geometry that depends on time and state but is not integrated.
     type Frame: Clone + Send + Sync;
-    /// Storage that an evaluation needs; made once, so that evaluations do not allocate.
+    /// Working storage of an evaluation; it is created once, so that evaluations do not allocate.
     type Work: Send;
 
-    /// What the unknowns are, in the order in which the state holds them.
+    /// Fields of unknowns, in the order in which the state holds them.
     fn fields(&self) -> &[Field];
     /// Number of unknowns.
     fn len(&self) -> usize {
         unknowns(self.fields())
     }
-    /// True when there is nothing to evolve.
+    /// True if there are no unknowns.
     fn is_empty(&self) -> bool {
         self.len() == 0
     }
-    /// The unknowns of a field in the state; empty where the system has none of that name.
+    /// Range of the unknowns of a field in the state; empty if the system has no field of that name.
     fn unknowns_of(&self, name: Name) -> Range<usize> {
         unknowns_of(self.fields(), name)
     }
-    /// The rows of a field among all rows; empty where the system has none of that name.
+    /// Range of the rows of a field among all rows; empty if the system has no field of that name.
     fn rows_of(&self, name: Name) -> Range<usize> {
         rows_of(self.fields(), name)
     }
-    /// The unknowns that frames depend on: coordinates of bodies. Whole fields; empty where all motion is prescribed.
+    /// Unknowns on which frames depend, which are the coordinates of bodies, as whole fields; empty if all motion is
+    /// prescribed.
     fn placing(&self) -> &Ranges {
         Ranges::NONE
     }
-    /// Has the unknowns that [remember](Name::History) take in the step that has led to the state `u`, whose other unknowns are solved.
+    /// Updates the [internal variables of the materials](Name::History) at the end of an accepted step. All other
+    /// unknowns of `u` are already solved.
     fn settle(&self, _frame: &Self::Frame, _work: &mut Self::Work, _u: &mut [f64]) {}
-    /// Fresh storage.
+    /// Creates working storage.
     fn work(&self) -> Self::Work;
-    /// The frame at an instant and at the state `u`.
+    /// The frame at the instant `at` and at the state `u`.
     fn frame(&self, at: &Instant<'_>, u: &[f64]) -> Self::Frame;
-    /// Brings the particles of a frame to an instant; does nothing when they never move.
+    /// Moves the particles of `frame` to the instant `at`; does nothing if they never move.
     fn place(&self, at: &Instant<'_>, frame: &mut Self::Frame);
-    /// Puts unknowns that are prescribed where they are to be at a time: where a solve begins.
+    /// Imposes the prescribed unknowns at the time `_time` on the state `_u`, where a solve begins.
     fn prescribe(&self, _time: f64, _u: &mut [f64]) {}
-    /// Brings a state from one time to another as far as what is prescribed leads it: a guess to begin with, whose difference from the
-    /// truth varies less than the state.
+    /// Predictor: advances the prescribed part of the state `u` from the time `_from` to the time `to`. The result is
+    /// an initial guess; its difference from the solution varies less in time than the state itself.
     fn lead(&self, _from: f64, to: f64, u: &mut [f64]) {
         self.prescribe(to, u);
     }
-    /// Lets particles that travel with the state choose where they go in the step that begins, which is meant to be as long as
-    /// `step`; the longest step they can take, infinite where none do.
+    /// Plans the displacement of particles that move with the fluid (Lagrangian particles) in the next step, whose
+    /// intended length is `_step`. Returns the longest step that they allow; infinite if there are no such particles.
     fn plan_lagrangian_step(&self, _step: f64, _u: &[f64], _work: &mut Self::Work, _frame: &mut Self::Frame) -> f64 {
         f64::INFINITY
     }
-    /// du = R(t, u), what the boundary holds beside the state `u` included.
+    /// Evaluates du = R(t, u), including the contributions of the boundary conditions.
     fn rhs(&self, frame: &Self::Frame, u: &[f64], work: &mut Self::Work, du: &mut [f64]);
-    /// out = ∂R/∂U v at `[u, v]` in a frame that stays as it is: exact where a system knows its derivative, else a central difference, whose
-    /// relative error is about 1e-8 where R is smooth. What unknowns remember counts as constant.
+    /// Computes out = ∂R/∂U v at `[u, v]` in a fixed frame. The product is exact if the system implements its
+    /// derivative, else a central difference, whose relative error is about 1e-8 where R is smooth. Internal variables
+    /// of materials are taken as constant.
     fn jvp(&self, frame: &Self::Frame, [u, v]: [&[f64]; 2], work: &mut Self::Work, out: &mut [f64]) {
         let size = norm(v);
         if size == 0.0 {
@@ -174,9 +184,10 @@ pub trait System: Sync {
         self.rhs(frame, &moved, work, &mut back);
         out.iter_mut().zip(&back).for_each(|(o, b)| *o = (*o - b) / (2.0 * step));
     }
-    /// out = dR/dU v at `[u, v]` where the frame goes with the state: [`jvp`](Self::jvp), and how R changes with the frame, from two frames
-    /// beside it that `place` brings to coordinates, see [`placing`](Self::placing). The relative error of that part is at most 1e-6 where R is
-    /// smooth, whether coordinates move clouds rigidly or deform them; there is no such part, and no error, where all motion is prescribed.
+    /// Computes out = dR/dU v at `[u, v]` when the frame follows the state: the product [`jvp`](Self::jvp) plus the
+    /// change of R with the frame. The second part is a central difference of two frames, which `place` sets to given
+    /// coordinates, see [`placing`](Self::placing). Its relative error is at most 1e-6 where R is smooth, whether the
+    /// coordinates move clouds rigidly or deform them; it vanishes if all motion is prescribed.
     fn jvp_with_frame(
         &self,
         frame: &Self::Frame,
@@ -200,171 +211,176 @@ pub trait System: Sync {
             out.iter_mut().zip(&there).for_each(|(o, r)| *o += r / (2.0 * side));
         }
     }
-    /// Largest rate of change 1/τ of each row: explicit steps need Δt · rate ≲ 1.
+    /// Maximum rate of change 1/τ of each row [1/time]: explicit steps need Δt · rate ≲ 1.
     fn rates(&self, frame: &Self::Frame, u: &[f64], work: &mut Self::Work, rate: &mut [f64]);
-    /// The largest relative change of a positive quantity (density, pressure) that the update `du` makes, or of a coordinate in
-    /// its unit; infinite if NaN.
+    /// Maximum relative change of a positive quantity (density, pressure) by the update `du`, or maximum change of a
+    /// coordinate in its unit; infinite if a value is NaN.
     fn largest_change(&self, u: &[f64], du: &[f64]) -> f64;
-    /// Shortens the update `du` until its [largest change](Self::largest_change) is at most `largest`. Rows whose changes are known one by
-    /// one are shortened one by one: where a shock passes, a few particles must not hold back all others. Others as a whole.
+    /// Scales the update `du` so that its [largest change](Self::largest_change) is at most `largest`. Systems that
+    /// know the change of each row may scale row by row: near a moving shock, a few particles must not limit the update
+    /// of all others. By default the whole update is scaled.
     fn shorten(&self, u: &[f64], du: &mut [f64], largest: f64) {
         let change = self.largest_change(u, du);
         if change > largest && change.is_finite() {
             sweep_slots(du, |_, du| *du *= largest / change);
         }
     }
-    /// Largest pressure of a gas over its smallest in the state `u`, from which follows how strong shocks can be; infinite where unknown.
+    /// Ratio of the maximum to the minimum pressure of a gas in the state `_u`, which indicates how strong shocks can
+    /// be; infinite if unknown.
     fn pressure_ratio(&self, _u: &[f64]) -> f64 {
         f64::INFINITY
     }
-    /// Refuses a state that is not physical.
+    /// Returns an error with the row and its position if the state `u` is not physical.
     fn check(&self, frame: &Self::Frame, u: &[f64]) -> Result<(), Fault>;
-    /// Refuses a frame whose particles motion has brought where the cloud no longer serves.
+    /// Returns an error if the motion has made the cloud of the frame unusable, e.g. because neighbours no longer
+    /// determine a gradient.
     fn check_frame(&self, _frame: &Self::Frame) -> Result<(), Fault> {
         Ok(())
     }
-    /// Where a row of the state is; nothing when it has no place.
+    /// Position of a row of the state; empty if the row has no position.
     fn locate(&self, _frame: &Self::Frame, _row: usize) -> Vec<f64> {
         Vec::new()
     }
 }
 
-/// A structure at a moment.
+/// State of a structure at one time, at which forces are evaluated.
 #[derive(Clone, Copy, Debug)]
 pub struct Moment<'a> {
-    /// Time.
+    /// Time at which forces are evaluated.
     pub time: f64,
-    /// Time since materials had their history; 0 for an instant.
+    /// Time since the last update of the internal variables; 0 for a single instant.
     pub step: f64,
-    /// Displacements.
+    /// Displacements of all degrees of freedom.
     pub displacement: &'a [f64],
-    /// Their rates.
+    /// Velocities of all degrees of freedom.
     pub velocity: &'a [f64],
-    /// What materials remember.
+    /// Internal variables of the materials.
     pub history: &'a [f64],
 }
 
-/// How a structure is damped: by α M + β K about the shape at rest, as far as that goes.
+/// Rayleigh damping α M + β K of a structure, with the stiffness K of the undeformed shape.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Damping {
-    /// α, in proportion to mass.
+    /// Coefficient α of the damping proportional to mass [1/time].
     pub mass: f64,
-    /// β, in proportion to stiffness.
+    /// Coefficient β of the damping proportional to stiffness (time).
     pub stiffness: f64,
-    /// False where there is none but in proportion to mass.
+    /// True if there is damping other than that proportional to mass.
     pub is_viscous: bool,
 }
 
-/// A system of second order, M u″ = f(t, u, u′, history): structures. Its state is displacements, as many velocities, and what
-/// materials remember, which grows with each step that is taken and not in between.
+/// A second-order system M u″ = f(t, u, u′, history): a structure. Its state consists of the displacements, the
+/// velocities and the internal variables of the materials, which change only when a step is accepted.
 pub trait Mechanical: System {
-    /// The stiffness at a state.
+    /// Stiffness matrix, with damping, linearised about a state.
     type Stiffness: Send;
 
     /// Number of displacements.
     fn displacements(&self) -> usize;
-    /// Mass that displacement number `k` moves.
+    /// Mass of the degree of freedom `k`.
     fn mass(&self, k: usize) -> f64;
-    /// True where a support decides on displacement number `k`.
+    /// True if a support prescribes the degree of freedom `k`.
     fn is_held(&self, k: usize) -> bool;
-    /// Puts what is held where it is to be at a time.
+    /// Imposes the displacements of the supports at the time `time`.
     fn hold(&self, time: f64, displacement: &mut [f64]);
-    /// Forces at a moment, and what materials remember of it.
+    /// Computes the forces at `at`, and the internal variables `after` that result from it.
     fn forces(&self, at: &Moment<'_>, work: &mut Self::Work, force: &mut [f64], after: &mut [f64]);
-    /// Refuses a state whose forces were found last with `work`.
+    /// Returns an error if the state of the last evaluation of forces with `work` is not physical.
     fn check_forces(&self, work: &Self::Work, displacement: &[f64]) -> Result<(), Fault>;
-    /// The longest step for which explicit methods are stable.
+    /// Largest time step for which explicit methods are stable.
     fn stable_step(&self, displacement: &[f64]) -> f64;
-    /// `parts[0]` times the stiffness and `parts[1]` times the damping −∂f/∂u′ at a moment, without that in proportion to mass.
+    /// Linearises the forces: `parts[0]` times the stiffness plus `parts[1]` times the damping −∂f/∂u′, without the
+    /// damping proportional to mass.
     fn linearise(&self, at: &Moment<'_>, parts: [f64; 2]) -> Self::Stiffness;
-    /// How it is damped.
+    /// Coefficients of the damping.
     fn damping(&self) -> Damping;
-    /// out = K w.
+    /// Computes out = K w.
     fn stiffness(&self, stiffness: &Self::Stiffness, w: &[f64], work: &mut Self::Work, out: &mut [f64]);
-    /// `scale` K + `shift` M among what is free, one for what is held.
+    /// The matrix `scale` K + `shift` M of the free degrees of freedom, with the identity for those of supports.
     fn matrix(&self, stiffness: &Self::Stiffness, scale: f64, shift: f64) -> Symmetric;
-    /// The diagonal of K.
+    /// Diagonal of K.
     fn diagonal(&self, stiffness: &Self::Stiffness) -> Vec<f64>;
-    /// Unknowns of the largest matrix that is factored; conjugate gradients do without beyond.
+    /// Number of unknowns up to which the matrix is factored; larger systems are solved by conjugate gradients without
+    /// a factorisation.
     fn largest_factored(&self) -> usize;
 }
 
-/// What an implicit method needs besides.
+/// A system that implicit methods can integrate, because it has a preconditioner.
 pub trait Implicit: System {
-    /// How its linear systems are preconditioned.
+    /// Preconditioner of the linear systems.
     type Preconditioner: Preconditioner<Self>;
 
-    /// An empty preconditioner; for all instances of a period at once where a `period` is given.
+    /// Creates an empty preconditioner; with a `period`, one for all instances of the period together.
     fn preconditioner(&self, plan: &Hierarchy, period: Option<Period>) -> Self::Preconditioner;
 }
 
-/// How a preconditioner may spread over a cloud.
+/// Levels of a multilevel preconditioner.
 #[derive(Clone, Copy, Debug)]
 pub struct Hierarchy {
-    /// Rows that are gathered into one of the next coarser level.
+    /// Number of rows that form one row of the next coarser level.
     pub group: usize,
-    /// Visits of the levels.
+    /// Multigrid cycle: the order in which levels are visited.
     pub cycle: Cycle,
 }
 
-/// Instances of a period of a solution that is periodic in time.
+/// Time instances of a solution that is periodic in time.
 #[derive(Clone, Copy, Debug)]
 pub struct Period {
-    /// The instances.
+    /// Instances of one period.
     pub instances: Instances,
-    /// Angular frequency.
+    /// Angular frequency ω [rad/time].
     pub omega: f64,
-    /// False where what is sought has no mean over the period.
+    /// False if the unknown has a zero mean over the period, as in linearised problems.
     pub mean: bool,
 }
 
-/// How far the unknowns of a linear system feel one another.
+/// Range over which the unknowns of a linear system are coupled.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Reach {
-    /// As far as their neighbours: a short step in time.
+    /// Local coupling between neighbours: short time steps.
     #[default]
     Near,
-    /// Across the cloud.
+    /// Global coupling across the cloud: long time steps and steady flow.
     Far,
 }
 
-/// What is added to −∂R/∂U in a linear system.
+/// Diagonal that is added to −∂R/∂U in a linear system.
 #[derive(Clone, Copy, Debug)]
 pub struct Shift<'a> {
-    /// How fast each row can change, 1/τ.
+    /// Maximum rate of change of each row, 1/τ [1/time].
     pub rates: &'a [f64],
-    /// Courant number: Δτ over τ.
+    /// Courant number Δτ/τ of the pseudo-time step.
     pub cfl: f64,
-    /// Coefficient c of the state sought in the formula of ∂/∂t.
+    /// Coefficient c of the new state in the difference formula of ∂/∂t [1/time].
     pub coefficient: f64,
-    /// How far the system reaches.
+    /// Range of the coupling between unknowns.
     pub reach: Reach,
 }
 
 impl Shift<'_> {
-    /// 1/Δτ + c of row `i`.
+    /// Diagonal entry 1/Δτ + c of row `i`.
     #[inline(always)]
     pub fn of(&self, i: usize) -> f64 {
         self.rates[i] / self.cfl + self.coefficient
     }
 }
 
-/// The right-hand side of a linear system; rows scaled by `scale` where it is not empty.
+/// Right-hand side of a linear system.
 #[derive(Clone, Copy, Debug)]
 pub enum RightHandSide<'a> {
-    /// Divided by the scale of each row.
+    /// Stored values, each row of which is divided by its scale.
     Scaled {
-        /// Values.
+        /// Stored values, one for each unknown.
         values: Numbers<'a>,
-        /// Scale of each row.
+        /// Scale, one for each row.
         scale: &'a [f64],
     },
-    /// As it is.
+    /// Values without scaling, one for each unknown.
     Plain(&'a [f64]),
 }
 
 impl RightHandSide<'_> {
-    /// Row `i`, which begins at unknown number `at`.
+    /// Writes row `i`, whose first unknown has the index `at`, in single precision.
     #[inline(always)]
     pub fn row(&self, i: usize, at: usize, row: &mut [f32]) {
         match self {
@@ -375,7 +391,7 @@ impl RightHandSide<'_> {
         }
     }
 
-    /// The same in double precision.
+    /// Writes row `i`, whose first unknown has the index `at`, in double precision.
     pub fn row_in_full(&self, i: usize, at: usize, row: &mut [f64]) {
         match self {
             Self::Scaled { values, scale } => {
@@ -385,7 +401,7 @@ impl RightHandSide<'_> {
         }
     }
 
-    /// The part of it that belongs to one field.
+    /// The part of this right-hand side that belongs to one field.
     pub fn of<'b>(&'b self, field: &Placed) -> RightHandSide<'b> {
         match self {
             Self::Scaled { values, scale } => {
@@ -396,25 +412,25 @@ impl RightHandSide<'_> {
     }
 }
 
-/// Approximate inverses of shift − ∂R/∂U, one after another: made from one or several points, applied many times, made again
-/// when the integrator asks for it.
+/// Approximate inverse of shift − ∂R/∂U. It is built from the linearisation at one or several points, applied many
+/// times, and rebuilt when the integrator requests it.
 ///
-/// In harmonic balance the instances of a row are tied together by ∂/∂t, which belongs to the preconditioner as well: lagging
-/// it outside diverges.
+/// In harmonic balance, ∂/∂t couples the instances of a row. The preconditioner must include this coupling: the
+/// iteration diverges if the coupling is lagged.
 pub trait Preconditioner<S: System + ?Sized>: Send {
-    /// Begins anew with the mean of the linearisations at `points` points.
+    /// Discards the matrix and starts the average of the linearisations at `points` points.
     fn begin(&mut self, points: usize);
-    /// Adds the linearisation at the state `u`.
+    /// Adds the linearisation at the state `u` to the average.
     fn add(&mut self, system: &S, frame: &S::Frame, u: &[f64], work: &mut S::Work);
-    /// Completes it with what is added to −∂R/∂U.
+    /// Completes the preconditioner with the diagonal that is added to −∂R/∂U.
     fn finish(&mut self, shift: &Shift<'_>);
-    /// z ≈ (shift − ∂R/∂U)⁻¹ r, in the frames at hand: one when marching, one for each instance that the unknowns hold in a
-    /// periodic solution. They may have moved on since it was made.
+    /// Computes z ≈ (shift − ∂R/∂U)⁻¹ r in the current frames, which may differ from those of the linearisation: one
+    /// frame in a march, one for each instance of a periodic solution.
     fn apply(&mut self, system: &S, frames: &[&S::Frame], r: &RightHandSide<'_>, z: &mut [f64]);
-    /// Bytes held.
+    /// Memory in use (bytes).
     fn bytes(&self) -> usize;
 
-    /// Makes it at one point.
+    /// Builds the preconditioner from the linearisation at one point.
     fn update(&mut self, system: &S, at: (&S::Frame, &[f64]), work: &mut S::Work, shift: &Shift<'_>) {
         self.begin(1);
         self.add(system, at.0, at.1, work);
@@ -427,9 +443,9 @@ pub trait Preconditioner<S: System + ?Sized>: Send {
 pub struct Fault {
     /// Index of the row.
     pub particle: usize,
-    /// Where it is.
+    /// Position of the row; empty if it has none.
     pub place: Vec<f64>,
-    /// What is wrong with it.
+    /// Description of the fault.
     pub reason: String,
 }
 

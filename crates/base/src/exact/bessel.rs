@@ -1,18 +1,19 @@
 //! Modified Bessel functions K₀ and K₁ of a complex argument.
 //!
 //! K_n(z) = ∫₀^∞ e^{−z cosh t} cosh(n t) dt for Re z > 0 (Watson, A Treatise on the Theory of Bessel Functions, 1944, section 6.22).
-//! Along t = s − iφ tanh s, φ = arg z, the integrand falls off for every z that is not on the negative real axis, so that the integral
-//! continues the functions to the left half plane; it is even and analytic in s, where the trapezoidal rule converges exponentially.
+//! Along t = s − iφ tanh s with φ = arg z, the integrand decays for every z that is not on the negative real axis, so
+//! that the integral continues the functions to the left half plane. It is even and analytic in s, where the
+//! trapezoidal rule converges exponentially.
 use num_complex::Complex64;
 
-/// Steps in the width 1/√|z| of the integrand, or in that of tanh.
+/// Number of steps within the width 1/√|z| of the integrand, or within that of tanh.
 const STEPS: f64 = 24.0;
-/// Part of the sum below which terms no longer count.
+/// Fraction of the sum below which terms are negligible.
 const NEGLIGIBLE: f64 = 1e-19;
-/// More terms are never needed for |z| above the least double of normal size.
+/// Maximum number of terms; fewer suffice for |z| above the smallest normal number.
 const MOST: usize = 100_000;
 
-/// K₀(z) and K₁(z) for z that is neither zero nor negative.
+/// K₀(z) and K₁(z) for z that is neither zero nor on the negative real axis.
 pub(super) fn modified_second(z: Complex64) -> [Complex64; 2] {
     let (phase, step) = (z.arg(), 1.0 / (STEPS * (1.0 + z.norm()).sqrt()));
     let term = |s: f64| {
@@ -64,7 +65,7 @@ mod tests {
         }
     }
 
-    /// I₀ and I₁ by their series.
+    /// I₀ and I₁ by their power series.
     fn modified_first(z: Complex64) -> [Complex64; 2] {
         let quarter = z * z * 0.25;
         let mut terms = [Complex64::new(1.0, 0.0), z * 0.5];

@@ -1,35 +1,35 @@
 //! The laminar boundary layer on a flat plate.
 //!
-//! Blasius (1908): u/U = f′(η), η = y √(U/(νx)), with f‴ + f f″/2 = 0, f(0) = f′(0) = 0, f′(∞) = 1. Constant density and
-//! viscosity, so Mach numbers up to about 0.2, and far enough from the leading edge that √Re_x is large.
+//! Blasius (1908): u/U = f′(η), η = y √(U/(νx)), with f‴ + f f″/2 = 0, f(0) = f′(0) = 0, f′(∞) = 1. Density and
+//! viscosity are constant, so that the Mach number should be below about 0.2, and √Re_x must be large.
 use super::Error;
 
-/// f″(0), known to all digits (Boyd, SIAM Review 50, 2008).
+/// Wall shear f″(0), to all digits (Boyd, SIAM Review 50, 2008).
 pub const WALL_SHEAR: f64 = 0.332_057_336_215_196_3;
-/// Displacement thickness δ* = 1.720 787 657… x/√Re_x: limit of η − f.
+/// Displacement thickness δ* divided by x/√Re_x: 1.720 787 657…, the limit of η − f.
 pub const DISPLACEMENT: f64 = 1.720_787_657_520_5;
-/// Momentum thickness θ over x/√Re_x: 2 f″(0).
+/// Momentum thickness θ divided by x/√Re_x: 2 f″(0).
 pub const MOMENTUM: f64 = 2.0 * WALL_SHEAR;
 
-/// Where f′ = 1 to all digits.
+/// Height η at which f′ = 1 to all digits.
 const FAR: f64 = 12.0;
-/// Step of the Runge-Kutta method; its error at the far end is below 1e-12.
+/// Step of the Runge-Kutta method in η; the error at the outer end is below 1e-12.
 const STEP: f64 = 0.01;
 
-/// The solution at one height.
+/// The boundary-layer solution at one height.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Layer {
-    /// f, the stream function.
+    /// Stream function f.
     pub f: f64,
-    /// u/U = f′.
+    /// Velocity along the plate, u/U = f′.
     pub velocity: f64,
-    /// f″.
+    /// Velocity gradient f″.
     pub shear: f64,
-    /// v/U √Re_x = (η f′ − f)/2.
+    /// Velocity normal to the plate, v/U √Re_x = (η f′ − f)/2.
     pub normal: f64,
 }
 
-/// The layer at the height η = y √(U/(νx)).
+/// Solution at the height η = y √(U/(νx)); an error if η is negative.
 pub fn layer(eta: f64) -> Result<Layer, Error> {
     if !(0.0 <= eta) {
         return Err(Error::Parameter { what: "height in a boundary layer", value: eta, range: "not negative" });
@@ -47,12 +47,12 @@ pub fn layer(eta: f64) -> Result<Layer, Error> {
     Ok(Layer { f: w[0], velocity: w[1], shear: w[2], normal: 0.5 * (eta * w[1] - w[0]) })
 }
 
-/// Skin friction over the dynamic pressure at the Reynolds number `re_x` of the distance from the leading edge.
+/// Skin-friction coefficient τ_w/(½ρU²) at the Reynolds number `re_x` of the distance from the leading edge.
 pub fn skin_friction(re_x: f64) -> f64 {
     2.0 * WALL_SHEAR / re_x.sqrt()
 }
 
-/// Drag of one side over dynamic pressure and length, at the Reynolds number `re` of the whole plate.
+/// Drag coefficient of one side, on the length of the plate, at the Reynolds number `re` of that length.
 pub fn drag(re: f64) -> f64 {
     4.0 * WALL_SHEAR / re.sqrt()
 }

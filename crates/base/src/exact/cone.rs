@@ -1,13 +1,13 @@
 //! Supersonic flow past a cone at zero incidence.
 //!
-//! Behind an attached conical shock the flow is isentropic and depends on the angle θ from the axis alone. With velocities over the
-//! greatest speed √(2 h₀), u away from the apex and v across it,
+//! Behind an attached conical shock the flow is isentropic and depends only on the angle θ from the axis. With
+//! velocities divided by the maximum speed √(2 h₀), u along the ray from the apex and v normal to it,
 //!
 //! u' = v,  v' = (v² u − a (2u + v cot θ)) / (a − v²),  a = (γ−1)/2 (1 − u² − v²),
 //!
-//! from the state behind an oblique shock of angle β down to the surface, where v = 0. The half angle of the cone that belongs to
-//! β rises from zero at the Mach angle to a greatest value and falls again; the flatter shock is the one that is seen. The pressure is the same
-//! all along the surface. Angles are radians.
+//! from the state behind an oblique shock of angle β down to the surface, where v = 0. As a function of β, the half
+//! angle of the cone increases from zero at the Mach angle to a maximum and decreases again; in practice the weaker
+//! shock occurs. The pressure is constant along the surface. Angles are in radians.
 //!
 //! Source: G. I. Taylor and J. W. Maccoll, *The air pressure on a cone moving at high speeds*, Proc. R. Soc. A 139 (1933), 278-311; charts 5
 //! to 7 of NACA Report 1135 (1953).
@@ -17,28 +17,29 @@ use super::shock::{deflection, normal_shock};
 use super::{Error, check_gamma};
 use std::f64::consts::FRAC_PI_2;
 
-/// Steps of the integration from the shock to the surface.
+/// Number of steps of the integration from the shock to the surface.
 const STEPS: usize = 2000;
-/// Least half angle: below it the shock is a Mach wave.
+/// Minimum half angle (rad); for smaller ones the shock is a Mach wave.
 const LEAST: f64 = 1e-3;
-/// Shock angles among which the greatest half angle is looked for.
+/// Number of shock angles among which the maximum half angle is searched.
 const SEARCHED: usize = 60;
 
 /// Flow past a cone.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ConeFlow {
-    /// Angle of the shock to the axis.
+    /// Shock angle to the axis (rad).
     pub shock_angle: f64,
-    /// Pressure behind the shock over that of the free stream.
+    /// Ratio of the pressure behind the shock to that of the free stream.
     pub shock_pressure: f64,
-    /// Pressure on the surface over that of the free stream.
+    /// Ratio of the surface pressure to that of the free stream.
     pub surface_pressure: f64,
     /// Mach number on the surface.
     pub surface_mach: f64,
 }
 
 impl ConeFlow {
-    /// The flow at Mach number `mach` past a cone of this half angle; refuses cones whose shock is detached.
+    /// Flow at the Mach number `mach` past a cone of this half angle (rad). Returns an error if `gamma`, the Mach
+    /// number or the angle is outside its range, or the shock is detached.
     pub fn new(mach: f64, half_angle: f64, gamma: f64) -> Result<Self, Error> {
         check_gamma(gamma)?;
         if !(1.0 < mach && mach.is_finite()) {
@@ -66,26 +67,26 @@ impl ConeFlow {
         Ok(Self { shock_angle, shock_pressure, surface_pressure: shock_pressure * expansion, surface_mach })
     }
 
-    /// Pressure coefficient on the surface in a free stream at Mach number `mach`.
+    /// Pressure coefficient on the surface for the free-stream Mach number `mach`.
     pub fn surface_pressure_coefficient(&self, mach: f64, gamma: f64) -> f64 {
         (self.surface_pressure - 1.0) / (0.5 * gamma * mach * mach)
     }
 }
 
-/// Conical flow at one angle.
+/// Conical flow at one angle from the axis.
 #[derive(Clone, Copy)]
 struct Ray {
     angle: f64,
-    /// u and v over the greatest speed.
+    /// Velocities u and v divided by the maximum speed.
     velocity: [f64; 2],
     gamma: f64,
 }
 
-/// The ray just behind a shock of this angle.
+/// The ray just behind a shock of the angle `shock` (rad).
 fn behind(mach: f64, shock: f64, gamma: f64) -> Ray {
     let turn = deflection(mach, shock, gamma);
     let ahead = (1.0 + 2.0 / ((gamma - 1.0) * mach * mach)).powf(-0.5);
-    // the velocity along the shock stays
+    // the velocity along the shock does not change
     let along = ahead * shock.cos();
     Ray { angle: shock, velocity: [along, -along * (shock - turn).tan()], gamma }
 }
@@ -116,9 +117,9 @@ impl Ray {
         Self { angle: angle + step, velocity: along(sum, step), ..self }
     }
 
-    /// Angle of the surface, and the speed there: where v = 0.
+    /// Angle of the surface, where v = 0, and the speed there.
     fn surface(self) -> (f64, f64) {
-        // steps grow away from the shock: a − v² is next to nothing behind a weak one
+        // small steps near the shock, because a − v² is almost zero behind a weak one
         let place = |k: usize| self.angle * (1.0 - (k as f64 / STEPS as f64).powi(2));
         let mut ray = self;
         for k in 1..STEPS {
@@ -128,7 +129,7 @@ impl Ray {
             }
             ray = next;
         }
-        // Newton's method for the last part of a step
+        // Newton's method for the last fraction of a step
         for _ in 0..3 {
             ray = ray.stepped(-ray.velocity[1] / ray.slope(ray.angle, ray.velocity)[1]);
         }

@@ -1,9 +1,10 @@
 //! Diamond airfoil in supersonic flow by shock-expansion theory.
 //!
-//! A symmetric double wedge of unit chord, thickest at half chord: tan δ = t/c. The front panels turn the flow by δ ∓ α
-//! through an oblique shock (or an expansion when negative), the shoulder turns it back by 2δ through a Prandtl-Meyer fan.
-//! Pressure is constant on each panel; the solution is the exact inviscid one while the shocks are attached and the waves of
-//! the shoulder meet the bow shock downstream of the trailing edge. Thickness zero is the flat plate.
+//! A symmetric double wedge of unit chord with maximum thickness at half chord: tan δ = t/c. The front panels turn the
+//! flow by δ ∓ α through an oblique shock (or an expansion if negative); the shoulder turns it back by 2δ through a
+//! Prandtl-Meyer fan. The pressure is constant on each panel. The solution is exact for inviscid flow as long as the
+//! shocks are attached and the waves of the shoulder meet the bow shock downstream of the trailing edge. Zero thickness
+//! is the flat plate.
 //!
 //! Source: J. Ackeret (1925) and A. Busemann (1931) as in NACA Report 1135 (1953) and H. W. Liepmann and A. Roshko,
 //! *Elements of Gasdynamics* (1957), section 4.17.
@@ -11,12 +12,12 @@ use super::expansion::expand;
 use super::shock::{Branch, oblique_shock};
 use super::{Error, check_gamma};
 
-/// Flow on one panel.
+/// Flow on one panel of the airfoil.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Panel {
-    /// Mach number.
+    /// Mach number on the panel.
     pub mach: f64,
-    /// Pressure over free-stream pressure.
+    /// Ratio of the pressure to that of the free stream.
     pub pressure: f64,
 }
 
@@ -31,14 +32,15 @@ pub struct Diamond {
     pub lower_front: Panel,
     /// Lower side, rear panel.
     pub lower_rear: Panel,
-    /// Lift coefficient on the chord.
+    /// Lift coefficient, based on the chord.
     pub lift: f64,
-    /// Drag coefficient on the chord.
+    /// Drag coefficient, based on the chord.
     pub drag: f64,
 }
 
 impl Diamond {
-    /// The flow at `mach` past a diamond of the given thickness over chord at incidence `alpha` (radians).
+    /// Flow at `mach` past a diamond of the given thickness-to-chord ratio at the angle of attack `alpha` (rad).
+    /// Returns an error if an argument is outside its range or a shock is detached.
     pub fn new(mach: f64, thickness: f64, alpha: f64, gamma: f64) -> Result<Self, Error> {
         check_gamma(gamma)?;
         if !(0.0 <= thickness && thickness.is_finite()) {
@@ -47,7 +49,7 @@ impl Diamond {
         let half_angle = thickness.atan();
         let (upper_front, upper_rear) = side(mach, half_angle - alpha, half_angle, gamma)?;
         let (lower_front, lower_rear) = side(mach, half_angle + alpha, half_angle, gamma)?;
-        // pressure on the projections of the panels: chord for the normal force, height for the axial force
+        // forces from the projections of the panels: chord for the normal force, height for the axial force
         let normal = 0.5 * (lower_front.pressure + lower_rear.pressure - upper_front.pressure - upper_rear.pressure);
         let axial =
             0.5 * thickness * (upper_front.pressure + lower_front.pressure - upper_rear.pressure - lower_rear.pressure);
@@ -58,7 +60,8 @@ impl Diamond {
     }
 }
 
-/// Front and rear panel of one side: the front turns the flow by `turn` into itself, the shoulder by twice the half angle.
+/// Front and rear panel of one side: the front turns the flow by `turn` (positive: compression), the shoulder by twice
+/// the half angle.
 fn side(mach: f64, turn: f64, half_angle: f64, gamma: f64) -> Result<(Panel, Panel), Error> {
     let front = if turn >= 0.0 {
         let shock = oblique_shock(mach, turn, Branch::Weak, gamma)?;

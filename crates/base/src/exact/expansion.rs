@@ -1,81 +1,82 @@
 //! Isentropic relations and the Prandtl-Meyer expansion.
 //!
-//! Along a streamline without shocks the stagnation values stay: with m = 1 + (γ−1)/2 M²,
-//! T0/T = m, p0/p = m^(γ/(γ−1)), ρ0/ρ = m^(1/(γ−1)). A supersonic flow that turns by ν2 − ν1 away from itself expands to
-//! the Mach number of ν2, where
+//! Along a streamline without shocks, stagnation values are constant: with m = 1 + (γ−1)/2 M², T0/T = m, p0/p =
+//! m^(γ/(γ−1)), ρ0/ρ = m^(1/(γ−1)). A supersonic flow that is turned by ν2 − ν1 around a convex corner expands to the
+//! Mach number of ν2, where
 //!
 //! ν(M) = √((γ+1)/(γ−1)) atan √((γ−1)/(γ+1) (M²−1)) − atan √(M²−1).
 //!
-//! Angles are radians. Source: Ames Research Staff, *Equations, Tables and Charts for Compressible Flow*, NACA Report 1135
-//! (1953), eqs. (43)-(46), (171).
+//! Angles are in radians. Source: Ames Research Staff, *Equations, Tables and Charts for Compressible Flow*, NACA
+//! Report 1135 (1953), eqs. (43)-(46), (171).
 use super::roots::bisect;
 use super::{Error, check_gamma};
 use std::f64::consts::FRAC_PI_2;
 
-/// Stagnation over static temperature.
+/// Ratio T0/T of stagnation to static temperature.
 pub fn stagnation_temperature_ratio(mach: f64, gamma: f64) -> f64 {
     1.0 + 0.5 * (gamma - 1.0) * mach * mach
 }
 
-/// Stagnation over static pressure.
+/// Ratio p0/p of stagnation to static pressure.
 pub fn stagnation_pressure_ratio(mach: f64, gamma: f64) -> f64 {
     stagnation_temperature_ratio(mach, gamma).powf(gamma / (gamma - 1.0))
 }
 
-/// Stagnation over static density.
+/// Ratio ρ0/ρ of stagnation to static density.
 pub fn stagnation_density_ratio(mach: f64, gamma: f64) -> f64 {
     stagnation_temperature_ratio(mach, gamma).powf(1.0 / (gamma - 1.0))
 }
 
-/// Pressure coefficient of a point where the speed is `speed_ratio` times the free-stream speed, isentropic from there.
+/// Pressure coefficient at a point where the speed is `speed_ratio` times the free-stream speed, for isentropic flow.
 ///
-/// Cp = 2/(γM²) ((1 + (γ−1)/2 M² (1 − q²))^(γ/(γ−1)) − 1), and 1 − q² when M is zero.
+/// Cp = 2/(γM²) ((1 + (γ−1)/2 M² (1 − q²))^(γ/(γ−1)) − 1), and 1 − q² for M = 0.
 pub fn isentropic_pressure_coefficient(speed_ratio: f64, mach: f64, gamma: f64) -> f64 {
     let excess = 1.0 - speed_ratio * speed_ratio;
     let m2 = mach * mach;
     if m2 == 0.0 {
         return excess;
     }
-    // ln_1p and exp_m1 keep the digits that (1 + ε)^n − 1 loses at small Mach numbers
+    // ln_1p and exp_m1 are accurate at small Mach numbers, where (1 + ε)^n − 1 is not
     let heat = (0.5 * (gamma - 1.0) * m2 * excess).max(-1.0);
     2.0 / (gamma * m2) * (gamma / (gamma - 1.0) * heat.ln_1p()).exp_m1()
 }
 
-/// Prandtl-Meyer angle ν(M); zero at and below Mach 1.
+/// Prandtl-Meyer angle ν(M) (rad); zero at and below Mach 1.
 pub fn prandtl_meyer_angle(mach: f64, gamma: f64) -> f64 {
     let s = (mach * mach - 1.0).max(0.0).sqrt();
     let g = ((gamma + 1.0) / (gamma - 1.0)).sqrt();
     g * (s / g).atan() - s.atan()
 }
 
-/// Prandtl-Meyer angle of the expansion into vacuum, (√((γ+1)/(γ−1)) − 1) π/2.
+/// Prandtl-Meyer angle of the expansion into vacuum, (√((γ+1)/(γ−1)) − 1) π/2 (rad).
 pub fn prandtl_meyer_limit(gamma: f64) -> f64 {
     (((gamma + 1.0) / (gamma - 1.0)).sqrt() - 1.0) * FRAC_PI_2
 }
 
-/// Mach number whose Prandtl-Meyer angle is `angle`.
+/// Mach number of the Prandtl-Meyer angle `angle` (rad); an error if the angle is outside its range.
 pub fn mach_of_prandtl_meyer_angle(angle: f64, gamma: f64) -> Result<f64, Error> {
     check_gamma(gamma)?;
     if !(0.0 <= angle && angle < prandtl_meyer_limit(gamma)) {
         return Err(Error::Angle { what: "Prandtl-Meyer expansion", range: "[0, angle of vacuum)", angle });
     }
-    // in the Mach angle μ = asin(1/M) the interval is finite: μ = π/2 at Mach 1, 0 at vacuum
+    // as a function of the Mach angle μ = asin(1/M), the interval is finite: μ = π/2 at Mach 1, 0 in vacuum
     let mach_angle = bisect(0.0, FRAC_PI_2, |mu| angle - prandtl_meyer_angle(1.0 / mu.sin(), gamma));
     Ok(1.0 / mach_angle.sin())
 }
 
-/// A flow after a centred expansion.
+/// State behind a centred expansion.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Expansion {
     /// Mach number behind the fan.
     pub mach: f64,
-    /// Static pressure behind over ahead.
+    /// Ratio of the static pressure behind the fan to that ahead.
     pub pressure_ratio: f64,
-    /// Density behind over ahead.
+    /// Ratio of the density behind the fan to that ahead.
     pub density_ratio: f64,
 }
 
-/// The flow at `mach` after turning by `turn` (positive away from itself).
+/// Expansion of a flow at `mach` by the turning angle `turn` (rad), positive around a convex corner; an error if an
+/// argument is outside its range.
 pub fn expand(mach: f64, turn: f64, gamma: f64) -> Result<Expansion, Error> {
     check_gamma(gamma)?;
     if !(1.0 <= mach && mach.is_finite()) {

@@ -1,58 +1,59 @@
 //! Flutter of a typical section in incompressible flow.
 //!
-//! A plate of half chord b and mass m per span on springs of plunge and pitch, with the loads of Theodorsen (NACA report 496, 1935)
-//! continued to growing and decaying motions e^{st} by C(p) = K₁(p)/(K₀(p) + K₁(p)), p = sb/U (Edwards, Ashley and Breakwell, AIAA J.
-//! 17, 1979): exact for linear potential flow. With z = h/b up, α nose up, λ = s/ω_α = p V*, V* = U/(b ω_α), μ = m/(πρb²), ω̄ = ω_h/ω_α,
+//! A flat plate of half chord b and mass m per span on plunge and pitch springs, with the loads of Theodorsen (NACA
+//! report 496, 1935). They are continued to growing and decaying motions e^{st} by C(p) = K₁(p)/(K₀(p) + K₁(p)), p =
+//! sb/U (Edwards, Ashley and Breakwell, AIAA J. 17, 1979), which is exact for linear potential flow. With z = h/b
+//! positive up, α positive nose up, λ = s/ω_α = p V*, V* = U/(b ω_α), μ = m/(πρb²), ω̄ = ω_h/ω_α,
 //!
 //! (λ² + 2ζ_h ω̄ λ + ω̄²) z − x_α λ² α = V*² c_l/(πμ), −x_α λ² z + r_α² (λ² + 2ζ_α λ + 1) α = 2 V*² c_m/(πμ),
 //!
-//! with the coefficients of [`super::theodorsen`]. Its determinant has the two roots that without stream are those of the section in still
-//! fluid; flutter begins where one of them first crosses to positive real part. A real root crosses at zero: divergence, at
-//! V*² = μ r_α²/(1 + 2a).
+//! with the coefficients of [`super::theodorsen`]. The determinant has two roots that start from those of the section
+//! in still fluid at zero speed; flutter begins where one of them first crosses to a positive real part. A real root
+//! crosses at zero: divergence, at V*² = μ r_α²/(1 + 2a).
 use num_complex::Complex64;
 
 use super::Error;
 use super::theodorsen::{plate_loads, theodorsen_growing};
 
-/// Reduced speed at which roots are followed from: there the stream does nothing to thirteen digits.
+/// Reduced speed at which the roots are started: the aerodynamic stiffness and damping are negligible there.
 const STILL: f64 = 1e-3;
-/// Steps in which roots are followed, at least, up to a speed.
+/// Minimum number of steps in which roots are followed up to a speed.
 const STEPS: usize = 400;
-/// Iterations of the secant method that are allowed.
+/// Maximum number of iterations of the secant method.
 const MOST: usize = 60;
-/// Change of a root, over its size, that ends them: a few units in the last place.
+/// Relative change of a root at which the iteration ends: a few units in the last place.
 const CONVERGED: f64 = 4e-16;
-/// Halvings that bring an interval of speeds to the last bits.
+/// Number of bisections that reduce an interval of speeds to round-off.
 const HALVINGS: usize = 60;
 
-/// A typical section, lengths over half the chord.
+/// A typical section; lengths are divided by the half chord b.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FlutterSection {
-    /// μ = m/(πρb²).
+    /// Mass ratio μ = m/(πρb²).
     pub mass_ratio: f64,
-    /// a: elastic axis aft of the middle of the chord.
+    /// Position a of the elastic axis, aft of mid-chord.
     pub axis: f64,
-    /// x_α: centre of mass aft of the elastic axis.
+    /// Static unbalance x_α: distance of the centre of mass aft of the elastic axis.
     pub x_alpha: f64,
-    /// r_α²: moment of inertia about the elastic axis over m b².
+    /// Square of the radius of gyration, r_α²: moment of inertia about the elastic axis divided by m b².
     pub r_alpha2: f64,
-    /// ω_h/ω_α.
+    /// Ratio ω_h/ω_α of the uncoupled plunge and pitch frequencies.
     pub frequency_ratio: f64,
-    /// Damping ratios ζ_h, ζ_α of the uncoupled coordinates.
+    /// Damping ratios ζ_h and ζ_α of the uncoupled degrees of freedom.
     pub damping: [f64; 2],
 }
 
-/// Where a motion neither grows nor decays.
+/// Flutter point: a harmonic motion that neither grows nor decays.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FlutterPoint {
-    /// V* = U/(b ω_α).
+    /// Reduced speed V* = U/(b ω_α).
     pub reduced_speed: f64,
-    /// ω/ω_α.
+    /// Frequency ratio ω/ω_α.
     pub frequency: f64,
 }
 
 impl FlutterPoint {
-    /// k = ωb/U.
+    /// Reduced frequency k = ωb/U.
     pub fn reduced_frequency(&self) -> f64 {
         self.frequency / self.reduced_speed
     }
@@ -61,7 +62,7 @@ impl FlutterPoint {
 type Matrix = [[Complex64; 2]; 2];
 
 impl FlutterSection {
-    /// The matrix of the equations for λ = s/ω_α at the reduced speed `v`.
+    /// Matrix of the equations for λ = s/ω_α at the reduced speed `v`.
     fn matrix(&self, lambda: Complex64, v: f64) -> Result<Matrix, Error> {
         let (zero, one) = (Complex64::new(0.0, 0.0), Complex64::new(1.0, 0.0));
         let (square, ratio, [zh, za]) = (lambda * lambda, self.frequency_ratio, self.damping);
@@ -77,13 +78,14 @@ impl FlutterSection {
         ])
     }
 
-    /// Determinant of the equations for λ = s/ω_α at the reduced speed `v`: zero for the motions that there are.
+    /// Determinant of the equations for λ = s/ω_α at the reduced speed `v`; it vanishes for the free motions.
     pub fn determinant(&self, lambda: Complex64, v: f64) -> Result<Complex64, Error> {
         let m = self.matrix(lambda, v)?;
         Ok(m[0][0] * m[1][1] - m[0][1] * m[1][0])
     }
 
-    /// The root λ = s/ω_α near `guess` at the reduced speed `v`: rate of growth and angular frequency over ω_α.
+    /// Root λ = s/ω_α near `guess` at the reduced speed `v`: growth rate and angular frequency divided by ω_α. Returns
+    /// an error if the iteration does not converge.
     pub fn root(&self, v: f64, guess: Complex64) -> Result<Complex64, Error> {
         let mut before = guess * Complex64::new(1.0, 1e-5);
         let mut now = guess;
@@ -98,7 +100,7 @@ impl FlutterSection {
             value = [value[1], self.determinant(now, v)?];
         }
         let rest = value[1].norm();
-        // the last digits may go on to tremble
+        // rounding may keep the last digits from settling
         if rest < 1e-12 {
             Ok(now)
         } else {
@@ -106,13 +108,14 @@ impl FlutterSection {
         }
     }
 
-    /// z/α of the motion with the root `lambda`: plunge (up, over b) for one radian of pitch.
+    /// Mode shape z/α of the root `lambda`: plunge (positive up, divided by b) per radian of pitch.
     pub fn plunge_over_pitch(&self, v: f64, lambda: Complex64) -> Result<Complex64, Error> {
         let m = self.matrix(lambda, v)?;
         Ok(-m[0][1] / m[0][0])
     }
 
-    /// Frequencies over ω_α in still fluid, whose inertia moves with the section; of the mode that has more plunge if it is the lower.
+    /// Frequencies divided by ω_α in still fluid with its added mass; the first is that of the mode with more plunge if
+    /// it is the lower one.
     fn still(&self) -> [f64; 2] {
         let (mu, a) = (self.mass_ratio, self.axis);
         let (m, s, i) = (1.0 + 1.0 / mu, self.x_alpha - a / mu, self.r_alpha2 + (0.125 + a * a) / mu);
@@ -123,7 +126,8 @@ impl FlutterSection {
         [(constant / (quadratic * large)).sqrt(), large.sqrt()]
     }
 
-    /// Follows both roots from still fluid to the reduced speed `upto`; `see` is called with speed and roots, and ends it by `false`.
+    /// Follows both roots from still fluid to the reduced speed `upto`; `see` is called with the speed and the roots,
+    /// and ends the search by returning false.
     fn follow(&self, upto: f64, mut see: impl FnMut(f64, [Complex64; 2]) -> bool) -> Result<(), Error> {
         let start = self.still().map(|w| Complex64::new(0.0, w));
         let first = STILL.min(0.5 * upto);
@@ -131,7 +135,7 @@ impl FlutterSection {
         for k in 1..=STEPS {
             let v = first + (upto - first) * k as f64 / STEPS as f64;
             let (now, roots) = path[path.len() - 1];
-            // along the line through the last two
+            // linear extrapolation from the last two steps
             let guess = match path.len() {
                 1 => roots,
                 n => {
@@ -162,7 +166,7 @@ impl FlutterSection {
         Ok(last)
     }
 
-    /// The lowest reduced speed below `upto` at which a motion begins to grow; `None` when none does.
+    /// Lowest reduced speed below `upto` at which a motion begins to grow; `None` if there is none.
     pub fn flutter(&self, upto: f64) -> Result<Option<FlutterPoint>, Error> {
         let (mut before, mut found) = ((STILL, [Complex64::new(-1.0, 0.0); 2]), None);
         self.follow(upto, |v, roots| {
@@ -183,7 +187,7 @@ impl FlutterSection {
         Ok(Some(FlutterPoint { reduced_speed: 0.5 * (low + high), frequency: root.im }))
     }
 
-    /// The reduced speed of divergence; `None` for an axis at or ahead of the quarter chord.
+    /// Reduced speed of divergence; `None` for an elastic axis at or ahead of the quarter chord.
     pub fn divergence(&self) -> Option<f64> {
         let lever = 1.0 + 2.0 * self.axis;
         (lever > 0.0).then(|| (self.mass_ratio * self.r_alpha2 / lever).sqrt())
@@ -230,7 +234,7 @@ mod tests {
         let s = section([60.0, -2.0, 1.8, 3.48, 1.0]);
         let v = s.flutter(25.0).unwrap().unwrap().reduced_speed;
         let before = s.modes(0.9 * v).unwrap();
-        // on from there, in steps short enough to stay on the same roots
+        // continues in steps short enough to stay on the same roots
         let mut roots = before;
         let mut most = |to: f64| {
             roots = s.roots(to * v, roots).unwrap();
@@ -240,12 +244,13 @@ mod tests {
         assert!(rates[3] < -1e-4 && rates[5].abs() < 1e-10 && rates[8] > 1e-4, "{rates:?}");
         for root in before {
             assert!(s.determinant(root, 0.9 * v).unwrap().norm() < 1e-12);
-            // the second equation holds for the shape of the first
+            // the second equation holds for the mode shape from the first
             let (z, m) = (s.plunge_over_pitch(0.9 * v, root).unwrap(), s.matrix(root, 0.9 * v).unwrap());
             assert!((m[1][0] * z + m[1][1]).norm() < 1e-11);
         }
         assert_eq!(s.flutter(10.0).unwrap(), None);
-        // dampers raise the speed here; on the heavy overhang of Isogai's section they lower it (Ziegler's paradox)
+        // damping increases the speed here; for Isogai's section with its large static unbalance it decreases it
+        // (Ziegler's paradox)
         let bending = section([40.0, -0.3, 0.2, 0.25, 0.4]);
         let (damped, at) =
             (FlutterSection { damping: [0.01, 0.01], ..bending }, bending.flutter(10.0).unwrap().unwrap());

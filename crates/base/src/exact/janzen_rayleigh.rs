@@ -4,25 +4,27 @@
 //!
 //! ∇²φn = ½ Σ ∇φi·∇Qj − (γ−1)/2 Σ (δj0 − Qj) ∇²φi, i + j = n − 1,
 //!
-//! one Poisson equation after the other. Every φn is a sum of a r^p cosᶜθ lnᵏr: each power of r of the right side is split
-//! into Legendre modes, r^p Pl has the solution r^(p+2) Pl/((p+2)(p+3) − l(l+1)), or r^(p+2) ln r Pl/(2p+5) where that divisor
-//! is zero, and r^(−l−1) Pl, harmonic, cancels the flow through r = 1. The first logarithm stands in φ3, before r⁻⁸ P7.
+//! which is a sequence of Poisson equations. Every φn is a sum of terms a r^p cosᶜθ lnᵏr. Each power of r on the
+//! right-hand side is split into Legendre modes. The mode r^p Pl has the solution r^(p+2) Pl/((p+2)(p+3) − l(l+1)), or
+//! r^(p+2) ln r Pl/(2p+5) if that divisor is zero; the harmonic function r^(−l−1) Pl cancels the flow through r = 1.
+//! The first logarithm appears in φ3, as a factor of r⁻⁸ P7.
 use std::collections::BTreeMap;
 
-/// Terms in M² beside the incompressible one: up to the first that holds a logarithm, since right sides with one are not
-/// solved here.
+/// Number of terms in M² after the incompressible one: up to the first that contains a logarithm, because right-hand
+/// sides with logarithms are not implemented.
 const TERMS: usize = 3;
-/// Coefficients that are round-off.
+/// Magnitude below which a coefficient is regarded as round-off.
 const ROUND_OFF: f64 = 1e-13;
 
-/// Σ a r^p cosᶜθ lnᵏr: a by (p, c, k).
+/// Series Σ a r^p cosᶜθ lnᵏr: coefficients a by (p, c, k).
 pub(super) type Series = BTreeMap<(i32, u32, u32), f64>;
 
-/// φ0, …, φ3 with lengths over the radius and speeds over the free stream's, which flows along θ = 0.
+/// Potentials φ0, …, φ3 with lengths divided by the radius and speeds by that of the free stream, which flows along θ =
+/// 0.
 pub(super) fn sphere_potentials(gamma: f64) -> Vec<Series> {
     let mut potential = vec![Series::from([((1, 1, 0), 1.0), ((-2, 1, 0), 0.5)])];
     let mut laplacian = vec![Series::new()];
-    // Q0 − 1, Q1, …
+    // the terms Q0 − 1, Q1, …
     let mut speed: Vec<Series> = Vec::new();
     for n in 1..=TERMS {
         let mut square = Series::new();
@@ -51,7 +53,7 @@ pub(super) fn evaluate(series: &Series, r: f64, cosine: f64) -> [f64; 3] {
     [at(series), at(&along(series)), at(&across(series))]
 }
 
-/// ∂/∂r.
+/// Derivative ∂/∂r of a series.
 fn along(series: &Series) -> Series {
     let mut out = Series::new();
     for (&(p, c, k), a) in series {
@@ -63,7 +65,7 @@ fn along(series: &Series) -> Series {
     out
 }
 
-/// ∂/∂cos θ.
+/// Derivative ∂/∂cos θ of a series.
 fn across(series: &Series) -> Series {
     let varying = series.iter().filter(|t| t.0.1 > 0);
     varying.map(|(&(p, c, k), a)| ((p, c - 1, k), f64::from(c) * a)).collect()
@@ -82,7 +84,7 @@ fn product(a: &Series, b: &Series) -> Series {
     out
 }
 
-/// ∇a·∇b = a_r b_r + (1 − cos²θ)/r² a_c b_c, subscript c for ∂/∂cos θ.
+/// Product ∇a·∇b = a_r b_r + (1 − cos²θ)/r² a_c b_c, where the subscript c means ∂/∂cos θ.
 fn gradients(a: &Series, b: &Series) -> Series {
     let metric = Series::from([((-2, 0, 0), 1.0), ((-2, 2, 0), -1.0)]);
     let mut out = product(&along(a), &along(b));
@@ -90,7 +92,7 @@ fn gradients(a: &Series, b: &Series) -> Series {
     out
 }
 
-/// φ with ∇²φ = `source`, which holds no logarithm, no flow through r = 1 and none far away.
+/// Solution φ of ∇²φ = `source` for a source without logarithms, with no flow through r = 1 and at infinity.
 fn solve(source: &Series) -> Series {
     let mut rest = source.clone();
     let mut potential = Series::new();
@@ -146,7 +148,7 @@ mod tests {
         assert!(expected.values().all(|a| a.abs() < 1e-12), "{expected:?}");
     }
 
-    #[test] // found by hand in rational arithmetic: 324/55 r^-10 P7 stands on the right side
+    #[test] // computed by hand in rational arithmetic: 324/55 r^-10 P7 is on the right-hand side
     fn third_term_has_one_logarithm() {
         let third = &sphere_potentials(1.4)[3];
         let logarithms: Vec<_> = third.iter().filter(|t| t.0.2 > 0).collect();

@@ -1,75 +1,78 @@
-//! Lift of thin flat wings in subsonic flow: lifting-surface theory by a lattice of horseshoe vortices.
+//! Lift of thin flat wings in subsonic flow: lifting-surface theory with a vortex lattice.
 //!
-//! Each panel carries a bound vortex at its quarter chord whose ends trail along x; at three quarters of the chord of every panel the downwash
-//! Σ w_ij Γ_j balances the incidence. Panels are equal along the chord, where the lattice is exact in the plane, and spaced by cosines along the
-//! span. The lift follows from Kutta and Joukowski, the induced drag from the downwash far behind (Trefftz):
-//! CDi = CL² / (π A e). Compressibility is that of Prandtl and Glauert in space (Göthert): the wing with x over β = √(1 − M²) in
+//! Each panel has a bound vortex at its quarter chord with trailing vortices along x. At the control point at three
+//! quarters of the chord of every panel, the downwash Σ w_ij Γ_j balances the angle of attack. Panels are equally
+//! spaced along the chord, where the lattice is exact in 2-D, and cosine-spaced along the span. Lift follows from the
+//! Kutta-Joukowski theorem, induced drag from the downwash far downstream (Trefftz plane): CDi = CL² / (π A e).
+//! Compressibility follows from the Prandtl-Glauert-Göthert rule in 3-D: the wing with x divided by β = √(1 − M²) in
 //! incompressible flow has β times the lift slope.
 //!
-//! A section of thickness lifts more than a flat plate, in the plane by the ratio κ of the slopes. Where the induced incidence
-//! is that of the lift alone, as in lifting-line theory, 1/a = 1/a_flat − (1 − 1/κ) β/2π ([`LiftingSurface::with_section`]).
+//! An aerofoil with thickness has a larger lift slope than a flat plate, in 2-D by the factor κ. If the induced angle
+//! of attack depends on the lift only, as in lifting-line theory, then 1/a = 1/a_flat − (1 − 1/κ) β/2π
+//! ([`LiftingSurface::with_section`]).
 //!
-//! Limits: small incidence, planar wings without twist, no suction or rolling up of tips; linear in compressibility, so that β stays well above
-//! the thickness. Sources: V. M. Falkner, ARC R&M 1910 (1943); C. E. Lan, J. Aircraft 11 (1974) 518-527; B. Göthert, NACA TM 1105 (1946).
+//! Limits: small angles of attack, planar wings without twist, no tip suction and no roll-up of tip vortices;
+//! compressibility is linear, so that β must be much larger than the thickness. Sources: V. M. Falkner, ARC R&M 1910
+//! (1943); C. E. Lan, J. Aircraft 11 (1974) 518-527; B. Göthert, NACA TM 1105 (1946).
 use super::Error;
 use crate::math::dense::Factors;
 use std::f64::consts::PI;
 
-/// Part of the sides below which a point lies on the line of a vortex.
+/// Distance relative to the sides of a triangle below which a point is regarded as lying on the line of a vortex.
 const ON_THE_LINE: f64 = 1e-12;
 
-/// How the chord changes along the span.
+/// Chord distribution along the span.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum ChordLaw {
-    /// In proportion to the distance from the root, down to this part of the root chord.
+    /// Linear from the root chord to the tip chord.
     Straight {
-        /// Chord at the tip over that at the root.
+        /// Ratio of the tip chord to the root chord.
         taper: f64,
     },
-    /// As that of an ellipse.
+    /// Elliptic planform.
     Elliptic,
 }
 
-/// A flat wing, symmetric about its root.
+/// A flat wing, symmetric about its root. Lengths may have any common unit.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FlatWing {
-    /// From tip to tip.
+    /// Span from tip to tip.
     pub span: f64,
     /// Chord at the root.
     pub root_chord: f64,
-    /// Chord along the span.
+    /// Chord distribution along the span.
     pub chord: ChordLaw,
-    /// Angle by which the line at `sweep_at` of the chord is swept back, radians.
+    /// Sweep angle of the line at the chord fraction `sweep_at`, positive aft (rad).
     pub sweep: f64,
-    /// Part of the chord at which that line runs.
+    /// Chord fraction of the line that has the sweep angle.
     pub sweep_at: f64,
 }
 
-/// Numbers of panels.
+/// Number of panels of the lattice.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Lattice {
-    /// Along the chord.
+    /// Number of panels along the chord.
     pub chordwise: usize,
-    /// Along half the span.
+    /// Number of panels along the half span.
     pub spanwise: usize,
 }
 
-/// What lifting-surface theory finds.
+/// Results of lifting-surface theory.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LiftingSurface {
-    /// Lift coefficient over the angle of attack, per radian, with the area of the planform.
+    /// Lift-curve slope dCL/dα per radian, based on the planform area.
     pub lift_slope: f64,
-    /// Efficiency e of the distribution of lift: one where it is elliptic.
+    /// Span efficiency e; 1 for an elliptic lift distribution.
     pub efficiency: f64,
-    /// Place of the neutral point behind the nose of the root.
+    /// Distance of the neutral point aft of the leading edge of the root.
     pub neutral_point: f64,
-    /// Span² over area.
+    /// Aspect ratio span²/area.
     pub aspect_ratio: f64,
-    /// √(1 − M²).
+    /// Prandtl-Glauert factor √(1 − M²).
     beta: f64,
 }
 
-/// A horseshoe vortex: the ends of its bound part in the plane of the wing, and where its panel is controlled.
+/// A horseshoe vortex: the ends of its bound part in the plane of the wing, and the control point of its panel.
 struct Panel {
     ends: [[f64; 2]; 2],
     control: [f64; 2],
@@ -88,12 +91,12 @@ impl FlatWing {
             }
     }
 
-    /// Point at a part of the chord at the distance `y` from the root.
+    /// Position along x of the chord fraction `part` at the distance `y` from the root.
     fn point(&self, part: f64, y: f64) -> f64 {
         self.sweep_at * self.root_chord + y * self.sweep.tan() + (part - self.sweep_at) * self.chord_at(y)
     }
 
-    /// Area of the planform.
+    /// Planform area of the wing.
     pub fn area(&self) -> f64 {
         self.span
             * self.root_chord
@@ -103,7 +106,8 @@ impl FlatWing {
             }
     }
 
-    /// Lift slope, efficiency and neutral point at Mach number `mach` < 1.
+    /// Lift slope, span efficiency and neutral point at the Mach number `mach` < 1; an error if the Mach number is
+    /// outside [0, 1).
     pub fn lift(&self, mach: f64, lattice: Lattice) -> Result<LiftingSurface, Error> {
         if !(0.0..1.0).contains(&mach) {
             return Err(Error::Mach { what: "lifting-surface theory", range: "[0, 1)", mach });
@@ -115,7 +119,7 @@ impl FlatWing {
             x: self.span,
             y: self.root_chord,
         })?;
-        // both sides of a wing at one radian in a stream of speed one: L = 2 Σ Γ Δy
+        // both halves of the wing at one radian in a stream of unit speed: L = 2 Σ Γ Δy
         let lift: f64 = panels.iter().zip(&circulation).map(|(p, g)| 4.0 * g * p.width).sum();
         let moment: f64 = panels
             .iter()
@@ -123,17 +127,18 @@ impl FlatWing {
             .map(|(p, g)| 4.0 * g * p.width * 0.5 * (p.ends[0][0] + p.ends[1][0]) * beta)
             .sum();
         let aspect_ratio = self.span * self.span / self.area();
-        // x over β makes the area greater by 1/β: the slope of that wing is β lift / area, that of this one 1/β times as much
+        // division of x by β increases the area by 1/β: the lift slope of that wing is β lift / area, and that of this
+        // wing is 1/β times as large
         let slope = lift / self.area();
         let drag = trefftz(&panels, &circulation, lattice.spanwise);
         let efficiency = lift * lift / (PI * self.span * self.span * drag);
         Ok(LiftingSurface { lift_slope: slope, efficiency, neutral_point: moment / lift, aspect_ratio, beta })
     }
 
-    /// The panels of the half at y > 0 of the wing with x over β.
+    /// Panels of the half wing y > 0 with x divided by β.
     fn panels(&self, beta: f64, lattice: Lattice) -> Vec<Panel> {
         let n = lattice.spanwise as f64;
-        // equal angles from root to tip; controls at their middle
+        // equal angles from root to tip, with control points in their middle
         let station = |k: f64| 0.5 * self.span * (0.5 * PI * k / n).sin();
         let rows = lattice.chordwise as f64;
         let panel = |strip: usize, row: usize| {
@@ -150,7 +155,7 @@ impl FlatWing {
 }
 
 impl LiftingSurface {
-    /// Lift slope of the same wing with a section whose slope in the plane is `ratio` times that of a flat plate.
+    /// Lift slope of this wing with an aerofoil whose 2-D lift slope is `ratio` times that of a flat plate.
     pub fn with_section(&self, ratio: f64) -> f64 {
         1.0 / (1.0 / self.lift_slope - (1.0 - 1.0 / ratio) * self.beta / (2.0 * PI))
     }
@@ -161,7 +166,7 @@ impl LiftingSurface {
     }
 }
 
-/// Circulations at which the downwash at all controls is one.
+/// Circulations for which the downwash at all control points is 1; `None` if the system is singular.
 fn circulation(panels: &[Panel]) -> Option<Vec<f64>> {
     let n = panels.len();
     let rows: Vec<f64> = panels
@@ -173,13 +178,14 @@ fn circulation(panels: &[Panel]) -> Option<Vec<f64>> {
     circulation.iter().all(|g| g.is_finite()).then_some(circulation)
 }
 
-/// The panel on the other side of the wing.
+/// Bound vortex of the mirrored panel on the other half of the wing.
 fn mirrored(panel: &Panel) -> [[f64; 2]; 2] {
     let [a, b] = panel.ends;
     [[b[0], -b[1]], [a[0], -a[1]]]
 }
 
-/// Velocity along z at a point of the plane of a horseshoe vortex of circulation one from `a` to `b`, whose ends trail along x.
+/// Velocity along z, at a point in the plane of the wing, of a horseshoe vortex of unit circulation from `a` to `b`,
+/// with trailing vortices along x.
 fn downwash(x: &[f64; 2], [a, b]: [[f64; 2]; 2]) -> f64 {
     let (ra, rb) = ([x[0] - a[0], x[1] - a[1]], [x[0] - b[0], x[1] - b[1]]);
     let (la, lb) = (ra[0].hypot(ra[1]), rb[0].hypot(rb[1]));
@@ -191,7 +197,8 @@ fn downwash(x: &[f64; 2], [a, b]: [[f64; 2]; 2]) -> f64 {
     (of_bound - trailing(ra, la) + trailing(rb, lb)) / (4.0 * PI)
 }
 
-/// Induced drag over ½ρU² at a lift of one radian: ∫ Γ w dy with the downwash of the trailing vortices far behind.
+/// Induced drag divided by ½ρU² at an angle of attack of one radian: ∫ Γ w dy with the downwash of the trailing
+/// vortices far downstream.
 fn trefftz(panels: &[Panel], circulation: &[f64], strips: usize) -> f64 {
     let mut strip = vec![(0.0, 0.0, 0.0, 0.0); strips];
     for (p, g) in panels.iter().zip(circulation) {
@@ -231,19 +238,20 @@ mod tests {
     fn long_and_elliptic_wings_follow_the_lifting_line() {
         let long = rectangle(400.0).lift(0.0, Lattice { chordwise: 4, spanwise: 60 }).unwrap();
         assert!((long.lift_slope / (2.0 * PI) - 1.0).abs() < 0.02, "{long:?}");
-        // R. T. Jones, NACA TN 817 (1941): 2π A / (A E + 2), with the ratio E of the semiperimeter to the span
+        // R. T. Jones, NACA TN 817 (1941): 2π A / (A E + 2), where E is the ratio of the semiperimeter to the span
         let ellipse = FlatWing { span: 8.0, root_chord: 1.0, chord: ChordLaw::Elliptic, sweep: 0.0, sweep_at: 0.25 };
         let found = ellipse.lift(0.0, FINE).unwrap();
         let (a, b, c) = (found.aspect_ratio, 4.0_f64, 0.5_f64);
-        // a quarter of the perimeter by Ramanujan
+        // a quarter of the perimeter by Ramanujan's formula
         let around = 0.25 * PI * (3.0 * (b + c) - ((3.0 * b + c) * (b + 3.0 * c)).sqrt());
         let edge = 2.0 * PI * a / (a * around / b + 2.0);
         assert!(
             (found.lift_slope / edge - 1.0).abs() < 0.02 && (found.efficiency - 1.0).abs() < 2e-3,
             "{found:?} {edge}"
         );
-        // H. Glauert, The Elements of Aerofoil and Airscrew Theory (1926), chapter 11, by 60 terms: 0.951 for a rectangle of aspect ratio
-        // 2π, 0.768 of 50; square tips carry less where the chord counts
+        // H. Glauert, The Elements of Aerofoil and Airscrew Theory (1926), chapter 11, with 60 terms: 0.951 for a
+        // rectangle of aspect ratio 2π, 0.768 for 50; square tips carry less load if the chord is not small compared
+        // with the span
         for (aspect_ratio, line) in [(2.0 * PI, 0.9514), (50.0, 0.7679)] {
             let found = rectangle(aspect_ratio).lift(0.0, FINE).unwrap();
             assert!(line < found.efficiency && found.efficiency < line + 0.05, "{found:?}");

@@ -1,7 +1,7 @@
-//! Exact solutions of gas dynamics: the truth that tests, verification cases and far fields compare with.
+//! Exact solutions of gas dynamics, with which tests and verification cases are compared, and which provide far fields.
 //!
-//! Every page states its solution, its source and where it stops being valid. All functions are pure, take the ratio of
-//! specific heats γ as an argument and use any consistent set of units unless the page says otherwise.
+//! Every page states its solution, its source and its range of validity. All functions are pure, take the ratio of
+//! specific heats γ as an argument and use any consistent set of units unless the page states otherwise.
 //!
 //! | page | solution |
 //! |---|---|
@@ -14,9 +14,9 @@
 //! | [`ringleb`] | Ringleb's transonic hodograph flow |
 //! | [`potential`] | subcritical flow past a circle and a sphere |
 //! | [`vortex_far_field`] | point vortex in a compressible free stream |
-//! | [`piston`] | piston started at once, and oscillating: simple wave and acoustics |
-//! | [`theodorsen`] | plate that pitches and plunges in incompressible flow |
-//! | [`flutter`] | typical section on springs in incompressible flow: roots, flutter, divergence |
+//! | [`piston`] | impulsively started and oscillating piston: simple wave and acoustics |
+//! | [`theodorsen`] | pitching and plunging plate in incompressible flow |
+//! | [`flutter`] | typical section in incompressible flow: roots, flutter, divergence |
 //! | [`lifting_surface`] | lift and induced drag of thin wings in subsonic flow |
 //! | [`blasius`] | laminar boundary layer on a flat plate |
 use crate::math::Vector;
@@ -39,12 +39,12 @@ pub mod theodorsen;
 pub mod vortex;
 pub mod vortex_far_field;
 
-/// Density, velocity and pressure of the gas at one point.
+/// State of the gas at one point.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct GasState<const D: usize, S = f64> {
-    /// Density.
+    /// Density of the gas.
     pub density: S,
-    /// Velocity.
+    /// Velocity of the gas.
     pub velocity: Vector<D, S>,
     /// Static pressure.
     pub pressure: S,
@@ -62,16 +62,16 @@ impl<const D: usize> GasState<D> {
     }
 }
 
-/// Why an exact solution does not exist for the arguments given.
+/// Reason why an exact solution does not exist for the given arguments.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum Error {
-    /// γ is not above one, or not finite.
+    /// The ratio of specific heats γ is not above 1, or not finite.
     #[error("ratio of specific heats {gamma} is outside (1, inf)\nhint: use 1.4 for air")]
     Gamma {
         /// The value given.
         gamma: f64,
     },
-    /// γ for which the solution has no closed form.
+    /// The solution has no closed form for this γ.
     #[error(
         "ratio of specific heats {gamma} has no closed form here\nhint: use 1 + 2/n with n odd, such as 1.4 or 5/3"
     )]
@@ -79,22 +79,22 @@ pub enum Error {
         /// The value given.
         gamma: f64,
     },
-    /// A state with density or pressure not positive, or a number that is not finite.
+    /// A density or pressure is not positive, or a value is not finite.
     #[error(
         "{side} state has density {density}, velocity {velocity}, pressure {pressure}\n\
          hint: density and pressure must be positive, all three finite"
     )]
     State {
-        /// Which state.
+        /// Name of the state, for the message.
         side: &'static str,
-        /// Its density.
+        /// Density of the state.
         density: f64,
-        /// Its velocity.
+        /// Velocity of the state.
         velocity: f64,
-        /// Its pressure.
+        /// Pressure of the state.
         pressure: f64,
     },
-    /// The two states of a Riemann problem part so fast that a vacuum opens.
+    /// The two states of a Riemann problem separate so fast that a vacuum forms.
     #[error(
         "velocity difference {difference} opens a vacuum, the limit is {limit}\n\
          hint: bring the velocities closer or raise the pressures"
@@ -102,66 +102,66 @@ pub enum Error {
     Vacuum {
         /// Right velocity minus left velocity.
         difference: f64,
-        /// Greatest difference without vacuum.
+        /// Maximum difference without vacuum.
         limit: f64,
     },
-    /// A Mach number outside the range of the solution.
+    /// A Mach number is outside the range of the solution.
     #[error("{what} needs a Mach number in {range}, not {mach}\nhint: change the Mach number")]
     Mach {
-        /// The solution.
+        /// Name of the solution.
         what: &'static str,
-        /// Its range.
+        /// Range of the Mach number.
         range: &'static str,
         /// The value given.
         mach: f64,
     },
-    /// A deflection for which no attached shock exists.
+    /// No attached shock exists for this deflection.
     #[error(
         "deflection of {angle} rad at Mach {mach} detaches the shock, the limit is {limit} rad\nhint: reduce the deflection or raise the Mach number"
     )]
     Detached {
-        /// The deflection, radians.
+        /// Deflection (rad).
         angle: f64,
         /// Mach number ahead of the shock.
         mach: f64,
-        /// Greatest deflection of an attached shock, radians.
+        /// Maximum deflection of an attached shock (rad).
         limit: f64,
     },
-    /// An angle outside the range of the solution.
+    /// An angle is outside the range of the solution.
     #[error("{what} needs an angle in {range}, not {angle} rad\nhint: change the angle")]
     Angle {
-        /// The solution.
+        /// Name of the solution.
         what: &'static str,
-        /// Its range.
+        /// Range of the angle.
         range: &'static str,
-        /// The value given, radians.
+        /// The value given (rad).
         angle: f64,
     },
-    /// A point where the solution is not defined.
+    /// The solution is not defined at this point.
     #[error(
         "point ({x}, {y}) lies outside {what}\nhint: move the domain into the region that the page of the solution names"
     )]
     Outside {
-        /// The solution.
+        /// Name of the solution.
         what: &'static str,
-        /// Abscissa.
+        /// Coordinate x of the point.
         x: f64,
-        /// Ordinate.
+        /// Coordinate y of the point.
         y: f64,
     },
-    /// A parameter that makes the solution meaningless.
+    /// A parameter is outside its range.
     #[error("{what} is {value}, needs {range}\nhint: change this parameter")]
     Parameter {
-        /// The parameter.
+        /// Name of the parameter.
         what: &'static str,
         /// The value given.
         value: f64,
-        /// What it may be.
+        /// Range of the parameter.
         range: &'static str,
     },
 }
 
-/// Refuses a ratio of specific heats that is not above one.
+/// Returns an error if the ratio of specific heats is not finite and above 1.
 pub(crate) fn check_gamma(gamma: f64) -> Result<(), Error> {
     if 1.0 < gamma && gamma.is_finite() { Ok(()) } else { Err(Error::Gamma { gamma }) }
 }

@@ -1,15 +1,16 @@
 //! A piston at the end of a tube of gas at rest.
 //!
-//! Started at once into the gas it sends out a shock: with M = u/c₀ and g = (γ + 1)/4 the shock runs at
-//! c₀ (gM + √(1 + g²M²)) and the piston feels p/p₀ = 1 + γM (gM + √(1 + g²M²)) (Rankine-Hugoniot). Withdrawn, and as long as
-//! it moves smoothly, it makes a simple wave: p/p₀ = (1 + (γ − 1)M/2)^(2γ/(γ−1)) on the piston at any amplitude, and every
-//! state runs off at u + c = c₀ + (γ + 1)u/2 (Landau and Lifshitz, Fluid Mechanics, § 101). Valid until the wave breaks;
-//! for small M it is the acoustic p − p₀ = ρ₀ c₀ u(t − x/c₀).
+//! A piston that starts impulsively into the gas creates a shock. With M = u/c₀ and g = (γ + 1)/4, the shock speed is
+//! c₀ (gM + √(1 + g²M²)), and the pressure on the piston is p/p₀ = 1 + γM (gM + √(1 + g²M²)) (Rankine-Hugoniot). A
+//! piston that is withdrawn, or moves smoothly, creates a simple wave: on the piston, p/p₀ = (1 + (γ −
+//! 1)M/2)^(2γ/(γ−1)) for any amplitude, and every state propagates at u + c = c₀ + (γ + 1)u/2 (Landau and Lifshitz,
+//! Fluid Mechanics, § 101). This is valid until the wave breaks; for small M the limit is the acoustic solution p − p₀
+//! = ρ₀ c₀ u(t − x/c₀).
 use super::roots::bisect;
 use super::{Error, GasState, check_gamma};
 use crate::math::Vector;
 
-/// Number of phases at which the breaking of the wave is looked for, between greatest retreat and advance.
+/// Number of phases, between maximum retreat and maximum advance, at which the breaking of the wave is searched.
 const PHASES: u32 = 128;
 
 /// Gas at rest in front of a piston.
@@ -20,7 +21,7 @@ pub struct Tube {
     gamma: f64,
 }
 
-/// What a piston sees that starts at once into the gas.
+/// State at a piston that starts impulsively into the gas.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Impulse {
     /// Pressure on the piston.
@@ -31,17 +32,18 @@ pub struct Impulse {
     pub shock_speed: f64,
 }
 
-/// A piston at X(t) = −(U/ω) cos ωt, with the speed U sin ωt.
+/// Motion of an oscillating piston, X(t) = −(U/ω) cos ωt, with the velocity U sin ωt.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Oscillation {
-    /// Amplitude U of the speed.
+    /// Amplitude U of the velocity.
     pub speed: f64,
-    /// Angular frequency ω.
+    /// Angular frequency ω [rad/time].
     pub omega: f64,
 }
 
 impl Tube {
-    /// A gas of given density, pressure and ratio of specific heats.
+    /// A tube of gas with the given density, pressure and ratio of specific heats; an error if one of them is outside
+    /// its range.
     pub fn new(density: f64, pressure: f64, gamma: f64) -> Result<Self, Error> {
         check_gamma(gamma)?;
         if !(density > 0.0 && pressure > 0.0 && density.is_finite() && pressure.is_finite()) {
@@ -55,14 +57,15 @@ impl Tube {
         (self.gamma * self.pressure / self.density).sqrt()
     }
 
-    /// Shock in front of a piston that starts at once with `speed` into the gas.
+    /// Shock in front of a piston that starts impulsively with `speed` into the gas; an error if the speed is outside
+    /// its range.
     pub fn impulse(&self, speed: f64) -> Result<Impulse, Error> {
         if !(0.0 <= speed && speed.is_finite()) {
-            let what = "speed of a piston that starts at once";
+            let what = "speed of an impulsively started piston";
             return Err(Error::Parameter {
                 what,
                 value: speed,
-                range: "a number that is not negative; use `on_piston`",
+                range: "zero or positive; use `on_piston` for a withdrawn piston",
             });
         }
         let mach = speed / self.sound_speed();
@@ -75,7 +78,8 @@ impl Tube {
         })
     }
 
-    /// State on a piston of momentary `speed` (positive into the gas) in a simple wave; a vacuum beyond −2c₀/(γ − 1).
+    /// State on a piston with the momentary velocity `speed` (positive into the gas) in a simple wave; a vacuum below
+    /// −2c₀/(γ − 1).
     pub fn on_piston(&self, speed: f64) -> GasState<1> {
         let sound = (1.0 + 0.5 * (self.gamma - 1.0) * speed / self.sound_speed()).max(0.0);
         let density = self.density * sound.powf(2.0 / (self.gamma - 1.0));
@@ -83,13 +87,13 @@ impl Tube {
         GasState { density, velocity: Vector([speed]), pressure }
     }
 
-    /// Acoustic pressure ρ₀c₀u for a piston of small `speed`, above p₀.
+    /// Acoustic pressure ρ₀c₀u above p₀ for a piston of small velocity `speed`.
     pub fn acoustic_pressure(&self, speed: f64) -> f64 {
         self.density * self.sound_speed() * speed
     }
 
-    /// Distance from the mean place of the piston at which the wave breaks: neighbouring characteristics meet after the
-    /// time (c₀ + (γ − 1)u/2) / ((γ + 1)u̇/2), and the first to do so count.
+    /// Distance from the mean position of the piston at which the wave breaks. Neighbouring characteristics meet after
+    /// the time (c₀ + (γ − 1)u/2) / ((γ + 1)u̇/2); the shortest distance counts.
     pub fn breaks_at(&self, piston: &Oscillation) -> f64 {
         let (c, fast) = (self.sound_speed(), 0.5 * (self.gamma + 1.0));
         let meeting = |k: u32| {
@@ -101,14 +105,16 @@ impl Tube {
         (1..PHASES).map(meeting).fold(f64::INFINITY, f64::min)
     }
 
-    /// State at `x` (from the mean place of the piston) and time `t` in the wave of an oscillating piston.
+    /// State at `x` (from the mean position of the piston) and time `t` in the wave of an oscillating piston; an error
+    /// outside the gas or where the solution is not valid.
     pub fn simple_wave(&self, piston: &Oscillation, x: f64, t: f64) -> Result<GasState<1>, Error> {
         let c = self.sound_speed();
         let fast = 0.5 * (self.gamma + 1.0);
-        // what left the piston at `from` is at reach(from) now; it decreases with `from` until the wave breaks
+        // the characteristic that left the piston at time `from` is now at reach(from), which decreases with `from`
+        // until the wave breaks
         let reach = |from: f64| piston.place(from) + (c + fast * piston.velocity(from)) * (t - from);
         if x < piston.place(t) || self.breaks_at(piston) <= x {
-            let what = "the gas between the piston and the place where the wave breaks";
+            let what = "the gas between the piston and the position where the wave breaks";
             return Err(Error::Outside { what, x, y: 0.0 });
         }
         let slowest = c - fast * piston.speed.abs();
@@ -123,12 +129,12 @@ impl Tube {
 }
 
 impl Oscillation {
-    /// Place of the piston.
+    /// Position of the piston.
     pub fn place(&self, t: f64) -> f64 {
         -self.speed / self.omega * (self.omega * t).cos()
     }
 
-    /// Speed of the piston.
+    /// Velocity of the piston.
     pub fn velocity(&self, t: f64) -> f64 {
         self.speed * (self.omega * t).sin()
     }

@@ -1,7 +1,7 @@
 //! Subcritical flow past a sphere and a circle.
 //!
-//! Shock-free flow past a body is isentropic and irrotational, v = ∇φ. With speeds over the free-stream speed, lengths over
-//! the radius and M the free-stream Mach number,
+//! Shock-free flow past a body is isentropic and irrotational, v = ∇φ. With speeds divided by the free-stream speed,
+//! lengths divided by the radius and M the free-stream Mach number,
 //!
 //! ∇²φ = M² [½ ∇φ·∇q² − (γ−1)/2 (1 − q²) ∇²φ], q = |∇φ|.
 //!
@@ -10,43 +10,44 @@
 //!
 //! φ1 = (r⁻²/3 − r⁻⁵/5 + r⁻⁸/24) P1 + (27/55 r⁻⁴ − 3/10 r⁻² − 3/10 r⁻⁵ + 3/176 r⁻⁸) P3,
 //!
-//! on the surface u/U = sin θ (3/2 + M² (551/1760 − 243/352 cos²θ)); φ2, where γ enters, adds for γ = 1.4
-//! M⁴ sin θ (0.3551 − 1.5761 cos²θ + 1.1949 cos⁴θ). All terms are computed by the module `janzen_rayleigh`.
+//! and on the surface u/U = sin θ (3/2 + M² (551/1760 − 243/352 cos²θ)). The term φ2, the first that depends on γ, adds
+//! M⁴ sin θ (0.3551 − 1.5761 cos²θ + 1.1949 cos⁴θ) for γ = 1.4. The module `janzen_rayleigh` computes all terms.
 //!
-//! **Circle.** Surface speeds from a spectral solution of the full equation (γ = 1.4, `cylinder_subsonic_potential_surface.csv`)
-//! at M = 0.1, 0.2, 0.3, 0.35 are turned into sine series and interpolated in M², together with the exact 2 sin θ at M = 0.
-//! They check against the O(M²) expansion u/U = 2 sin θ + M² (⅔ sin θ − ½ sin 3θ) (Rayleigh 1916).
+//! **Circle.** Surface speeds from a spectral solution of the full equation (γ = 1.4,
+//! `cylinder_subsonic_potential_surface.csv`) at M = 0.1, 0.2, 0.3, 0.35 are represented as sine series and
+//! interpolated in M², together with the exact 2 sin θ at M = 0. They agree with the O(M²) expansion u/U = 2 sin θ + M²
+//! (⅔ sin θ − ½ sin 3θ) (Rayleigh 1916).
 //!
-//! Conventions: flow along +x, θ from the x axis; speeds on the surface are the same fore and aft, so θ may be counted from
-//! either stagnation point. Limits: sphere M ≤ 0.5; φ2 changes Cp by up to 0.008 at M = 0.3, φ3 by 0.001; successive terms fall
-//! by about (M/0.57)², so that what is left out is 0.0004 there, 0.004 at 0.4 and 0.02 at 0.5. Circle M ≤ 0.35.
-//! Sources: O. Janzen, *Phys. Zeitschr.* 14 (1913) 639-643; Lord Rayleigh, *Phil. Mag.* 32 (1916) 1-6; the sphere's terms
-//! were derived anew here and are tested against the equation.
+//! Conventions: flow along +x, θ from the x axis. Surface speeds are symmetric fore and aft, so that θ may be measured
+//! from either stagnation point. Limits: sphere M ≤ 0.5. There, φ2 changes Cp by up to 0.008 at M = 0.3, φ3 by 0.001.
+//! Successive terms decrease by about (M/0.57)², so that the truncation error is 0.0004 at M = 0.3, 0.004 at 0.4 and
+//! 0.02 at 0.5. Circle M ≤ 0.35. Sources: O. Janzen, *Phys. Zeitschr.* 14 (1913) 639-643; Lord Rayleigh, *Phil. Mag.*
+//! 32 (1916) 1-6. The terms of the sphere were derived independently and are tested against the equation.
 use super::expansion::isentropic_pressure_coefficient;
 use super::janzen_rayleigh::{Series, evaluate, sphere_potentials};
 use super::{Error, check_gamma};
 use crate::math::Vector;
 
-/// Greatest Mach number of the sphere; it turns sonic at the equator near 0.57.
+/// Maximum Mach number of the sphere; the flow becomes sonic at the equator near 0.57.
 const SPHERE_MACH_LIMIT: f64 = 0.5;
-/// Greatest Mach number of the circle's table; it turns sonic near 0.398.
+/// Maximum Mach number of the table of the circle; the flow becomes sonic near 0.398.
 const CIRCLE_MACH_LIMIT: f64 = 0.35;
-/// Ratio of specific heats of the circle's table.
+/// Ratio of specific heats of the table of the circle.
 const CIRCLE_GAMMA: f64 = 1.4;
-/// Difference of γ that is round-off.
+/// Maximum difference of γ that is regarded as round-off.
 const GAMMA_TOLERANCE: f64 = 1e-9;
 
-/// Flow past a sphere of radius one to O(M⁶).
+/// Flow past a sphere of unit radius, including terms up to O(M⁶).
 #[derive(Clone, Debug, PartialEq)]
 pub struct SphereFlow {
     mach: f64,
     gamma: f64,
-    /// The potential in powers of r, cos θ and ln r.
+    /// Potential as a series in powers of r, cos θ and ln r.
     potential: Series,
 }
 
 impl SphereFlow {
-    /// The flow at free-stream Mach number `mach` ≤ 0.5.
+    /// Flow at the free-stream Mach number `mach` ≤ 0.5; an error if an argument is outside its range.
     pub fn new(mach: f64, gamma: f64) -> Result<Self, Error> {
         check_gamma(gamma)?;
         if !(0.0..=SPHERE_MACH_LIMIT).contains(&mach) {
@@ -59,17 +60,17 @@ impl SphereFlow {
         Ok(Self { mach, gamma, potential })
     }
 
-    /// Speed on the surface over free-stream speed at `theta` radians from a stagnation point.
+    /// Ratio of the surface speed to the free-stream speed at the angle `theta` (rad) from a stagnation point.
     pub fn surface_speed(&self, theta: f64) -> f64 {
         theta.sin() * evaluate(&self.potential, 1.0, theta.cos())[2]
     }
 
-    /// Pressure coefficient on the surface at `theta` radians from a stagnation point.
+    /// Pressure coefficient on the surface at the angle `theta` (rad) from a stagnation point.
     pub fn surface_pressure_coefficient(&self, theta: f64) -> f64 {
         isentropic_pressure_coefficient(self.surface_speed(theta), self.mach, self.gamma)
     }
 
-    /// Velocity over free-stream speed at `x` (in radii from the centre), |x| ≥ 1.
+    /// Velocity divided by the free-stream speed at `x` (in radii from the centre), |x| ≥ 1.
     pub fn velocity(&self, x: &Vector<3>) -> Vector<3> {
         let r = x.norm().max(f64::MIN_POSITIVE);
         let out = *x * (1.0 / r);
@@ -79,11 +80,11 @@ impl SphereFlow {
     }
 }
 
-/// Number of sine harmonics sin θ, sin 3θ, …: as many as tabulated angles.
+/// Number of sine harmonics sin θ, sin 3θ, …, equal to the number of tabulated angles.
 const HARMONICS: usize = 18;
 /// Mach numbers of the table.
 const CIRCLE_MACH: [f64; 4] = [0.1, 0.2, 0.3, 0.35];
-/// Surface speeds over free-stream speed at 5, 10, …, 90 degrees, one row a Mach number.
+/// Ratios of the surface speed to the free-stream speed at 5, 10, …, 90 degrees, one row for each Mach number.
 #[rustfmt::skip]
 const CIRCLE_SPEED: [[f64; HARMONICS]; 4] = [
     [
@@ -112,7 +113,8 @@ pub struct CircleFlow {
 }
 
 impl CircleFlow {
-    /// The flow at free-stream Mach number `mach` ≤ 0.35; the table holds for γ = 1.4.
+    /// Flow at the free-stream Mach number `mach` ≤ 0.35; an error if an argument is outside its range, because the
+    /// table is for γ = 1.4.
     pub fn new(mach: f64, gamma: f64) -> Result<Self, Error> {
         check_gamma(gamma)?;
         if (gamma - CIRCLE_GAMMA).abs() > GAMMA_TOLERANCE {
@@ -130,18 +132,18 @@ impl CircleFlow {
         Ok(Self { mach, coefficients })
     }
 
-    /// Speed on the surface over free-stream speed at `theta` radians from a stagnation point.
+    /// Ratio of the surface speed to the free-stream speed at the angle `theta` (rad) from a stagnation point.
     pub fn surface_speed(&self, theta: f64) -> f64 {
         (0..HARMONICS).map(|k| self.coefficients[k] * ((2 * k + 1) as f64 * theta).sin()).sum()
     }
 
-    /// Pressure coefficient on the surface at `theta` radians from a stagnation point.
+    /// Pressure coefficient on the surface at the angle `theta` (rad) from a stagnation point.
     pub fn surface_pressure_coefficient(&self, theta: f64) -> f64 {
         isentropic_pressure_coefficient(self.surface_speed(theta), self.mach, CIRCLE_GAMMA)
     }
 }
 
-/// Surface speed of the circle to O(M²), the check on the table.
+/// Ratio of the surface speed of the circle to the free-stream speed up to O(M²), for comparison with the table.
 pub fn circle_speed_janzen_rayleigh(mach: f64, theta: f64) -> f64 {
     2.0 * theta.sin() + mach * mach * (2.0 / 3.0 * theta.sin() - 0.5 * (3.0 * theta).sin())
 }
@@ -150,7 +152,7 @@ fn incompressible_series() -> [f64; HARMONICS] {
     std::array::from_fn(|k| if k == 0 { 2.0 } else { 0.0 })
 }
 
-/// Coefficients of sin((2k+1)θ) through values at 5, 10, …, 90 degrees (discrete sine transform).
+/// Coefficients of sin((2k+1)θ) from values at 5, 10, …, 90 degrees (discrete sine transform).
 fn sine_series(values: &[f64; HARMONICS]) -> [f64; HARMONICS] {
     let half = HARMONICS as f64;
     std::array::from_fn(|k| {
@@ -173,7 +175,7 @@ fn lagrange_weights(nodes: &[f64; 5], x: f64) -> [f64; 5] {
 mod tests {
     use super::*;
 
-    /// ∇²φ (1 + M²(γ−1)/2 (1−q²)) − M²/2 ∇φ·∇q² by differences of fourth order of the velocity.
+    /// Residual ∇²φ (1 + M²(γ−1)/2 (1−q²)) − M²/2 ∇φ·∇q² from fourth-order differences of the velocity.
     fn residual(flow: &SphereFlow, x: Vector<3>) -> f64 {
         let h = 2e-3;
         let m2 = flow.mach.powi(2);
@@ -195,7 +197,7 @@ mod tests {
             points.iter().map(|x| residual(&flow, *x).abs()).sum::<f64>()
         };
         assert!(at(0.0) < 1e-7, "potential flow");
-        // the residual left over is O(M⁸): 256 times smaller at half the Mach number
+        // the residual is O(M⁸): 256 times smaller at half the Mach number
         let ratio = at(0.4) / at(0.2);
         assert!(at(0.3) < 1e-3 && (200.0..330.0).contains(&ratio), "{} {ratio}", at(0.3));
     }
@@ -253,7 +255,7 @@ mod tests {
 
     #[test]
     fn circle_is_smooth_between_angles_and_mach_numbers() {
-        // between two tabulated Mach numbers the speed lies between theirs wherever they differ
+        // between two tabulated Mach numbers, the speed lies between their speeds unless these are equal
         let flow = CircleFlow::new(0.25, 1.4).unwrap();
         let (low, high) = (CircleFlow::new(0.2, 1.4).unwrap(), CircleFlow::new(0.3, 1.4).unwrap());
         for i in 1..=17 {

@@ -1,42 +1,42 @@
 //! Exact Riemann problem of the ideal gas.
 //!
-//! Two constant states meet at x = 0. A shock or a rarefaction runs into each of them; between the two waves pressure p*
-//! and velocity u* are constant and a contact carries the jump of density. With
+//! Two constant states meet at x = 0. A shock or a rarefaction propagates into each of them. Between the two waves, the
+//! pressure p* and the velocity u* are constant, and the density jumps at a contact discontinuity. With
 //!
 //! f_K(p) = (p − p_K) √(A_K/(p + B_K)) for a shock (p > p_K), A_K = 2/((γ+1)ρ_K), B_K = (γ−1)/(γ+1) p_K,
 //! f_K(p) = 2c_K/(γ−1) ((p/p_K)^((γ−1)/2γ) − 1) for a rarefaction,
 //!
 //! p* is the root of f_L(p) + f_R(p) + u_R − u_L = 0 and u* = (u_L + u_R + f_R − f_L)/2. The function is increasing and
-//! concave, so Newton's method converges from every start once it stands on the left of the root.
+//! concave, so that Newton's method converges from every initial guess as soon as an iterate is below the root.
 //!
-//! Limits: no vacuum, neither given nor created.
+//! Limits: neither state is a vacuum, and no vacuum forms between them.
 //! Source: E. F. Toro, *Riemann Solvers and Numerical Methods for Fluid Dynamics*, 3rd ed. (2009), chapter 4.
 use super::{Error, check_gamma};
 
-/// Newton steps allowed; the worst ratio of pressures that `f64` holds needs fewer.
+/// Maximum number of Newton steps; the largest pressure ratio in double precision needs fewer.
 const MAX_STEPS: usize = 200;
 /// Relative change of pressure at which the iteration has reached round-off.
 const ROUND_OFF: f64 = 1e-15;
-/// Factor on the pressure when a Newton step would leave the positive axis.
+/// Factor on the pressure if a Newton step would make it negative.
 const RETREAT: f64 = 1e-3;
 
-/// A state of the one-dimensional gas.
+/// State of a one-dimensional gas.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct State {
-    /// Density.
+    /// Density of the gas.
     pub density: f64,
-    /// Velocity.
+    /// Velocity of the gas.
     pub velocity: f64,
-    /// Pressure.
+    /// Pressure of the gas.
     pub pressure: f64,
 }
 
-/// What stands between the two outer waves.
+/// Star region between the two outer waves.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Star {
     /// Pressure p*.
     pub pressure: f64,
-    /// Velocity u*, the speed of the contact.
+    /// Velocity u*, which is the speed of the contact.
     pub velocity: f64,
     /// Density on the left of the contact.
     pub density_left: f64,
@@ -47,21 +47,21 @@ pub struct Star {
 /// One of the two outer waves.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Wave {
-    /// A discontinuity.
+    /// A shock.
     Shock {
-        /// Its speed.
+        /// Speed of the shock.
         speed: f64,
     },
-    /// A fan.
+    /// A rarefaction fan.
     Rarefaction {
-        /// Speed of the edge in the undisturbed gas.
+        /// Speed of the head, at the undisturbed gas.
         head: f64,
-        /// Speed of the edge at the star state.
+        /// Speed of the tail, at the star region.
         tail: f64,
     },
 }
 
-/// A solved Riemann problem.
+/// Solution of a Riemann problem.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RiemannProblem {
     left: State,
@@ -71,7 +71,7 @@ pub struct RiemannProblem {
 }
 
 impl State {
-    /// A state from its three numbers.
+    /// A state with the given density, velocity and pressure.
     pub fn new(density: f64, velocity: f64, pressure: f64) -> Self {
         Self { density, velocity, pressure }
     }
@@ -89,7 +89,7 @@ impl State {
 }
 
 impl RiemannProblem {
-    /// Solves the problem of `left` against `right`; refuses states without meaning and vacuum.
+    /// Solves the problem of the states `left` and `right`; an error if a state is not physical or a vacuum forms.
     pub fn new(left: State, right: State, gamma: f64) -> Result<Self, Error> {
         check_gamma(gamma)?;
         left.check("left")?;
@@ -118,32 +118,32 @@ impl RiemannProblem {
         self.right
     }
 
-    /// The star state.
+    /// State of the star region.
     pub fn star(&self) -> Star {
         self.star
     }
 
-    /// The wave that runs into the left state.
+    /// The wave that propagates into the left state.
     pub fn left_wave(&self) -> Wave {
         mirrored_wave(self.wave(&mirrored(&self.left), -self.star.velocity))
     }
 
-    /// The wave that runs into the right state.
+    /// The wave that propagates into the right state.
     pub fn right_wave(&self) -> Wave {
         self.wave(&self.right, self.star.velocity)
     }
 
-    /// Position at time `t` of the right shock for a membrane at `x0`; `None` when the right wave is a rarefaction.
+    /// Position at time `t` of the right shock for a diaphragm at `x0`; `None` if the right wave is a rarefaction.
     pub fn right_shock_position(&self, x0: f64, t: f64) -> Option<f64> {
         shock_position(self.right_wave(), x0, t)
     }
 
-    /// Position at time `t` of the left shock for a membrane at `x0`; `None` when the left wave is a rarefaction.
+    /// Position at time `t` of the left shock for a diaphragm at `x0`; `None` if the left wave is a rarefaction.
     pub fn left_shock_position(&self, x0: f64, t: f64) -> Option<f64> {
         shock_position(self.left_wave(), x0, t)
     }
 
-    /// The state on the ray x/t = `speed`.
+    /// State on the ray x/t = `speed`.
     pub fn sample(&self, speed: f64) -> State {
         if speed <= self.star.velocity {
             let state = self.sample_right(&mirrored(&self.left), -self.star.velocity, self.star.density_left, -speed);
@@ -153,7 +153,7 @@ impl RiemannProblem {
         }
     }
 
-    /// The state at `x` and time `t` for a membrane at `x0`; the start itself when `t` is not positive.
+    /// State at `x` and time `t` for a diaphragm at `x0`; the initial state if `t` is not positive.
     pub fn state(&self, x: f64, t: f64, x0: f64) -> State {
         if t > 0.0 {
             self.sample((x - x0) / t)
@@ -193,7 +193,7 @@ impl RiemannProblem {
     }
 }
 
-/// The state inside a fan that runs to the right, Toro (4.63).
+/// State inside a right-running fan, Toro (4.63).
 fn fan(outer: &State, gamma: f64, speed: f64) -> State {
     let c = outer.sound_speed(gamma);
     let ratio = 2.0 / (gamma + 1.0) - (gamma - 1.0) / ((gamma + 1.0) * c) * (outer.velocity - speed);
@@ -221,7 +221,7 @@ fn star_pressure(left: &State, right: &State, gamma: f64) -> f64 {
     p
 }
 
-/// p* if both waves were rarefactions, Toro (4.46): exact for two rarefactions, a fair start otherwise.
+/// Pressure p* for two rarefactions, Toro (4.46): exact if both waves are rarefactions, else an initial guess.
 fn two_rarefaction_pressure(left: &State, right: &State, gamma: f64) -> f64 {
     let z = 0.5 * (gamma - 1.0) / gamma;
     let (c_left, c_right) = (left.sound_speed(gamma), right.sound_speed(gamma));
@@ -230,7 +230,7 @@ fn two_rarefaction_pressure(left: &State, right: &State, gamma: f64) -> f64 {
     (above / below).powf(1.0 / z).max(f64::MIN_POSITIVE)
 }
 
-/// f_K(p) and its derivative, Toro (4.6), (4.37).
+/// The function f_K(p) and its derivative, Toro (4.6), (4.37).
 fn velocity_jump(outer: &State, gamma: f64, p: f64) -> (f64, f64) {
     if p > outer.pressure {
         let a = 2.0 / ((gamma + 1.0) * outer.density);

@@ -1,55 +1,56 @@
-//! Ringleb's flow: a steady compressible flow that turns around the edge of a plate.
+//! Ringleb's flow: steady compressible flow around the edge of a plate.
 //!
-//! The stream function ψ = sin θ / q solves Chaplygin's hodograph equation for every gas; q is the speed, θ the angle of
-//! the velocity line to the x axis and 1/k = ψ marks a streamline. With stagnation density and sound speed one,
-//! c² = 1 − (γ−1)/2 q², ρ = c^{2/(γ−1)}, p = ρ^γ/γ and
+//! The stream function ψ = sin θ / q solves Chaplygin's hodograph equation for every gas, where q is the speed, θ the
+//! angle between the velocity and the x axis, and 1/k = ψ identifies a streamline. With unit stagnation density and
+//! sound speed, c² = 1 − (γ−1)/2 q², ρ = c^{2/(γ−1)}, p = ρ^γ/γ and
 //!
 //! x = J/2 + cos 2θ /(2ρq²) = 1/(2ρ) (1/q² − 2/k²) + J/2, y = sin 2θ /(2ρq²), sin θ = q/k,
 //! J = Σ_{m=1,3,…,n} 1/(m cᵐ) − ½ ln((1+c)/(1−c)), n = 2/(γ−1) odd.
 //!
-//! Points of equal speed lie on a circle of radius 1/(2ρq²) about (J/2, 0), so the inverse map is one root in q. The
-//! distance to the circle grows with q wherever M² cos²θ < 1; that derivative vanishes on the limit line, where the map folds.
-//! The solution is the smallest root: the branch that joins the subsonic flow.
+//! Points of equal speed lie on a circle of radius 1/(2ρq²) about (J/2, 0), so that the inverse map is a scalar root in
+//! q. The distance to the circle increases with q wherever M² cos²θ < 1; this derivative vanishes on the limit line,
+//! where the map folds. The solution is the smallest root, on the branch that contains the subsonic flow.
 //!
-//! Conventions: the gas flows downwards (v < 0): in from y > 0 with u < 0, out at y < 0 with u > 0, fastest on y = 0. The plate
-//! is y = 0, x > J/2 of its edge speed (ψ = 0). Usual walls are the streamlines k = 0.7 and k = 1.5.
-//! Limits: γ = 1 + 2/n with n odd (1.4, 5/3, …); points beyond the limit line are refused.
+//! Conventions: the gas flows downwards (v < 0), in from y > 0 with u < 0 and out at y < 0 with u > 0; the speed is
+//! largest on y = 0. The plate is y = 0, x > J/2 for the speed at its edge (ψ = 0). Usual walls are the streamlines k =
+//! 0.7 and k = 1.5. Limits: γ = 1 + 2/n with n odd (1.4, 5/3, …); points beyond the limit line give an error.
 //!
 //! Source: F. Ringleb, *Exakte Lösungen der Differentialgleichungen einer adiabatischen Gasströmung*, ZAMM 20 (1940),
-//! 185-198; J was derived anew here for general n.
+//! 185-198; J was derived here for general n.
 use super::roots::bisect;
 use super::{Error, GasState, check_gamma};
 use crate::math::Vector;
 use std::f64::consts::PI;
 
-/// Distance of 2/(γ−1) from an odd number that round-off in γ may cause.
+/// Maximum distance of 2/(γ−1) from an odd number that is regarded as round-off in γ.
 const ODD_TOLERANCE: f64 = 1e-9;
-/// Steps in which supersonic speeds are searched for the first root.
+/// Number of steps in which supersonic speeds are searched for the first root.
 const SEARCH_STEPS: usize = 400;
-/// Least fraction of the limit speed that the subsonic search starts from: farther points are the far field at rest.
+/// Minimum fraction of the limit speed in the subsonic search: points with lower speeds are in the far field at rest.
 const SLOWEST: f64 = 1e-12;
 
-/// Ringleb's flow of a gas.
+/// Ringleb's flow for a given gas.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Ringleb {
     gamma: f64,
-    /// n = 2/(γ−1), odd.
+    /// Exponent n = 2/(γ−1), an odd number.
     exponent: i32,
 }
 
-/// A point of the hodograph.
+/// A point of the hodograph plane.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Hodograph {
-    /// Speed q over stagnation sound speed.
+    /// Speed q divided by the stagnation sound speed.
     pub speed: f64,
-    /// Streamline parameter k: reciprocal of the stream function, the speed where the streamline crosses y = 0.
+    /// Streamline parameter k: reciprocal of the stream function, equal to the speed where the streamline crosses y =
+    /// 0.
     pub streamline: f64,
-    /// Angle θ of the streamline in [0, π]: below π/2 where y > 0.
+    /// Angle θ of the streamline in [0, π] (rad); below π/2 for y > 0.
     pub angle: f64,
 }
 
 impl Ringleb {
-    /// The flow of a gas with ratio of specific heats `gamma` = 1 + 2/n, n odd.
+    /// Flow of a gas with the ratio of specific heats `gamma` = 1 + 2/n, n odd; an error for any other.
     pub fn new(gamma: f64) -> Result<Self, Error> {
         check_gamma(gamma)?;
         let n = 2.0 / (gamma - 1.0);
@@ -60,21 +61,21 @@ impl Ringleb {
         Ok(Self { gamma, exponent: odd as i32 })
     }
 
-    /// The gas at `x`.
+    /// State of the gas at `x`; an error beyond the limit line.
     pub fn state(&self, x: &Vector<2>) -> Result<GasState<2>, Error> {
         Ok(self.state_of(&self.hodograph(x)?))
     }
 
-    /// The gas at a point of the hodograph.
+    /// State of the gas at a point of the hodograph plane.
     pub fn state_of(&self, point: &Hodograph) -> GasState<2> {
         let density = self.density(point.speed);
         let velocity = Vector([point.angle.cos(), point.angle.sin()]) * -point.speed;
         GasState { density, velocity, pressure: density.powf(self.gamma) / self.gamma }
     }
 
-    /// Speed and streamline at `x`: the inverse map.
+    /// Speed and streamline at `x`, by the inverse map; an error beyond the limit line.
     pub fn hodograph(&self, x: &Vector<2>) -> Result<Hodograph, Error> {
-        let outside = Error::Outside { what: "the region of Ringleb's flow before its limit line", x: x[0], y: x[1] };
+        let outside = Error::Outside { what: "the region of Ringleb's flow up to its limit line", x: x[0], y: x[1] };
         if !x.is_finite() {
             return Err(outside);
         }
@@ -88,7 +89,7 @@ impl Ringleb {
         Ok(Hodograph { speed, streamline: speed / angle.sin(), angle })
     }
 
-    /// The point of streamline `k` where the speed is `q` ≤ `k`, on the side y ≥ 0 (`above`) or y ≤ 0.
+    /// Position on the streamline `k` at which the speed is `q` ≤ `k`, for y ≥ 0 (`above`) or y ≤ 0.
     pub fn position(&self, q: f64, k: f64, above: bool) -> Vector<2> {
         let sine = (q / k).clamp(-1.0, 1.0);
         let radius = self.radius(q);
@@ -97,9 +98,10 @@ impl Ringleb {
         Vector([x, if above { y } else { -y }])
     }
 
-    /// `n` ≥ 2 points along streamline `k` in the direction of the flow, between the two points of speed `q_min` < `k`.
+    /// `n` ≥ 2 points along the streamline `k` in the direction of the flow, between the two points with the speed
+    /// `q_min` < `k`.
     pub fn streamline(&self, k: f64, q_min: f64, n: usize) -> Vec<Vector<2>> {
-        // equal steps of θ are even in space where the streamline bends most
+        // equal steps of θ are uniform in space where the streamline curvature is largest
         let first = (q_min / k).clamp(0.0, 1.0).asin();
         let step = (PI - 2.0 * first) / (n.max(2) - 1) as f64;
         (0..n.max(2))
@@ -110,33 +112,34 @@ impl Ringleb {
             .collect()
     }
 
-    /// Unit normal of the streamline through `x`, towards smaller stream function (larger k).
+    /// Unit normal of the streamline through `x`, towards smaller stream function (larger k); an error beyond the limit
+    /// line.
     pub fn normal(&self, x: &Vector<2>) -> Result<Vector<2>, Error> {
         let angle = self.hodograph(x)?.angle;
         Ok(Vector([angle.sin(), -angle.cos()]))
     }
 
-    /// Stream function 1/k at `x`; walls of a channel are its level lines.
+    /// Stream function 1/k at `x`, which is constant on the walls of a channel; an error beyond the limit line.
     pub fn stream_function(&self, x: &Vector<2>) -> Result<f64, Error> {
         let point = self.hodograph(x)?;
         Ok(point.angle.sin() / point.speed)
     }
 
-    /// Density at speed `q`.
+    /// Density at the speed `q`, divided by the stagnation density.
     pub fn density(&self, q: f64) -> f64 {
         self.sound_speed(q).powi(self.exponent)
     }
 
-    /// Local sound speed at speed `q`, in units of the stagnation value.
+    /// Sound speed at the speed `q`, divided by the stagnation value.
     pub fn sound_speed(&self, q: f64) -> f64 {
         (1.0 - 0.5 * (self.gamma - 1.0) * q * q).max(0.0).sqrt()
     }
 
-    /// Twice the abscissa of the centre of the circle of speed `q`.
+    /// Twice the x coordinate of the centre of the circle of speed `q`.
     fn shift(&self, q: f64) -> f64 {
         let c = self.sound_speed(q);
         let series: f64 = (1..=self.exponent).step_by(2).map(|m| 1.0 / (f64::from(m) * c.powi(m))).sum();
-        // (1+c)/(1−c) = (1+c)²/((γ−1)/2 q²) has no cancellation at small q
+        // the form (1+c)/(1−c) = (1+c)²/((γ−1)/2 q²) has no cancellation at small q
         series - ((1.0 + c) / ((0.5 * (self.gamma - 1.0)).sqrt() * q)).ln()
     }
 
@@ -145,12 +148,12 @@ impl Ringleb {
         0.5 / (self.density(q) * q * q)
     }
 
-    /// Distance from `x` to the centre of the circle of speed `q`, less its radius.
+    /// Distance from `x` to the centre of the circle of speed `q`, minus its radius.
     fn excess(&self, q: f64, x: &Vector<2>) -> f64 {
         (x[0] - 0.5 * self.shift(q)).hypot(x[1]) - self.radius(q)
     }
 
-    /// Two speeds around the smallest root of `excess`.
+    /// Two speeds that bracket the smallest root of `excess`; `None` if there is no root.
     fn bracket(&self, x: &Vector<2>) -> Option<(f64, f64)> {
         let sonic = (2.0 / (self.gamma + 1.0)).sqrt();
         let vacuum = (2.0 / (self.gamma - 1.0)).sqrt();
@@ -199,7 +202,8 @@ mod tests {
                 let s = flow().state(&Vector([x, side * y])).unwrap();
                 assert!((s.density - density).abs() < 1e-8 && (s.pressure - pressure).abs() < 1e-8, "{k} {s:?}");
                 assert!((s.mach(1.4) - mach).abs() < 2e-8);
-                // signs are ours (see mass conservation below); u is a square root of a small number near y = 0
+                // the signs are those of this code (see mass conservation below); u is the square root of a small
+                // number near y = 0
                 assert!((s.velocity - Vector([-side * u.abs(), -v.abs()])).max_abs() < 1e-7, "{:?}", s.velocity);
                 let point = flow().hodograph(&Vector([x, side * y])).unwrap();
                 assert!((point.streamline - k).abs() < 1e-7);

@@ -1,11 +1,11 @@
 //! Roots of scalar functions.
 
-/// Halvings after which an interval of any size has shrunk below the spacing of `f64`.
+/// Number of bisections after which any interval is smaller than the spacing of `f64`.
 const MAX_HALVINGS: usize = 200;
 
-/// The root of `f` in `[low, high]` by bisection, to the last bit; `f` must change sign once.
+/// Root of `f` in `[low, high]` by bisection, to round-off; `f` must change sign once.
 ///
-/// Without a sign change the end nearer to the root of a monotone `f` is returned.
+/// Without a sign change, the end of the interval nearer to the root of a monotone `f` is returned.
 pub(crate) fn bisect(mut low: f64, mut high: f64, f: impl Fn(f64) -> f64) -> f64 {
     let rising = f(high) > f(low);
     for _ in 0..MAX_HALVINGS {

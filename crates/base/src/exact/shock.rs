@@ -1,67 +1,66 @@
 //! Normal and oblique shocks of the ideal gas.
 //!
-//! Across a shock normal to the flow (Rankine-Hugoniot)
-//! p2/p1 = 1 + 2γ/(γ+1) (M1²−1), ρ2/ρ1 = (γ+1)M1²/((γ−1)M1²+2). An oblique shock of angle β is a normal shock of
-//! M1 sin β; it turns the flow by θ with
+//! Across a shock normal to the flow (Rankine-Hugoniot), p2/p1 = 1 + 2γ/(γ+1) (M1²−1), ρ2/ρ1 = (γ+1)M1²/((γ−1)M1²+2).
+//! An oblique shock of angle β is a normal shock for M1 sin β; it deflects the flow by the angle θ with
 //!
 //! tan θ = 2 cot β (M1² sin²β − 1) / (M1² (γ + cos 2β) + 2).
 //!
-//! θ grows from zero at the Mach angle to its greatest value θ_max (detachment), then falls to zero at the normal shock:
-//! below θ_max there is a weak and a strong solution.
+//! θ increases from zero at the Mach angle to its maximum θ_max (detachment) and decreases to zero at the normal shock:
+//! below θ_max there are a weak and a strong solution.
 //!
-//! Angles are radians. Source: NACA Report 1135 (1953), eqs. (93)-(101), (128)-(150), (168).
+//! Angles are in radians. Source: NACA Report 1135 (1953), eqs. (93)-(101), (128)-(150), (168).
 use super::expansion::{stagnation_pressure_ratio, stagnation_temperature_ratio};
 use super::roots::bisect;
 use super::{Error, check_gamma};
 use std::f64::consts::FRAC_PI_2;
 
-/// Ratios across a shock, behind over ahead.
+/// Ratios of the state behind a shock to that ahead.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Jump {
     /// Mach number behind the shock.
     pub mach: f64,
     /// Static pressure ratio.
     pub pressure: f64,
-    /// Density ratio.
+    /// Ratio of the densities.
     pub density: f64,
-    /// Temperature ratio.
+    /// Ratio of the temperatures.
     pub temperature: f64,
-    /// Stagnation pressure ratio, below one: the loss.
+    /// Stagnation pressure ratio, below 1 because of the loss.
     pub stagnation_pressure: f64,
 }
 
 /// An oblique shock.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ObliqueShock {
-    /// Angle of the shock to the flow ahead.
+    /// Angle of the shock to the flow ahead (rad).
     pub angle: f64,
-    /// Ratios across it.
+    /// Ratios across the shock.
     pub jump: Jump,
 }
 
-/// Which of the two oblique shocks.
+/// Weak or strong solution of an oblique shock.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Branch {
-    /// The flatter one, seen on wedges.
+    /// Smaller shock angle, which occurs on wedges.
     Weak,
-    /// The steeper one, subsonic behind.
+    /// Larger shock angle, with subsonic flow behind.
     Strong,
 }
 
-/// The normal shock at Mach number `mach`.
+/// Ratios across a normal shock at the Mach number `mach`; an error below Mach 1.
 pub fn normal_shock(mach: f64, gamma: f64) -> Result<Jump, Error> {
     check_supersonic("normal shock", mach, gamma)?;
     Ok(jump(mach, mach, gamma))
 }
 
-/// Pressure coefficient at a stagnation point behind a normal shock (Rayleigh's pitot formula).
+/// Pressure coefficient at a stagnation point behind a normal shock (Rayleigh's pitot formula); an error below Mach 1.
 pub fn rayleigh_pitot_coefficient(mach: f64, gamma: f64) -> Result<f64, Error> {
     let jump = normal_shock(mach, gamma)?;
     let stagnation = jump.pressure * stagnation_pressure_ratio(jump.mach, gamma);
     Ok((stagnation - 1.0) / (0.5 * gamma * mach * mach))
 }
 
-/// Deflection θ of the flow by a shock of angle `angle`.
+/// Deflection θ (rad) of the flow by a shock of the angle `angle` (rad).
 pub fn deflection(mach: f64, angle: f64, gamma: f64) -> f64 {
     let normal = (mach * angle.sin()).powi(2);
     let above = 2.0 * (normal - 1.0) * angle.cos();
@@ -69,7 +68,7 @@ pub fn deflection(mach: f64, angle: f64, gamma: f64) -> f64 {
     above.atan2(below)
 }
 
-/// Shock angle at which the deflection is greatest, NACA 1135 (168).
+/// Shock angle of maximum deflection (rad), NACA 1135 (168); an error below Mach 1.
 pub fn detachment_shock_angle(mach: f64, gamma: f64) -> Result<f64, Error> {
     check_supersonic("detachment", mach, gamma)?;
     let m2 = mach * mach;
@@ -77,12 +76,13 @@ pub fn detachment_shock_angle(mach: f64, gamma: f64) -> Result<f64, Error> {
     Ok((((gamma + 1.0) / 4.0 * m2 - 1.0 + root) / (gamma * m2)).sqrt().min(1.0).asin())
 }
 
-/// Greatest deflection θ_max of an attached shock.
+/// Maximum deflection θ_max of an attached shock (rad); an error below Mach 1.
 pub fn detachment_deflection(mach: f64, gamma: f64) -> Result<f64, Error> {
     Ok(deflection(mach, detachment_shock_angle(mach, gamma)?, gamma))
 }
 
-/// The shock that turns a flow at `mach` by `turn` ≥ 0; refuses turns that detach it.
+/// Oblique shock that deflects a flow at `mach` by the angle `turn` ≥ 0 (rad); an error if an argument is outside its
+/// range or the shock is detached.
 pub fn oblique_shock(mach: f64, turn: f64, branch: Branch, gamma: f64) -> Result<ObliqueShock, Error> {
     let steepest = detachment_shock_angle(mach, gamma)?;
     let limit = deflection(mach, steepest, gamma);
@@ -101,9 +101,9 @@ pub fn oblique_shock(mach: f64, turn: f64, branch: Branch, gamma: f64) -> Result
     Ok(ObliqueShock { angle, jump: jump(mach, (mach * angle.sin()).max(1.0), gamma) })
 }
 
-/// Ratios across a shock met at `mach` with normal component `normal` of the Mach number.
+/// Ratios across a shock at the Mach number `mach`, whose component normal to the shock is `normal`.
 ///
-/// Total enthalpy stays, so the Mach number behind follows from the temperature alone.
+/// The total enthalpy is constant, so that the Mach number behind the shock follows from the temperature.
 fn jump(mach: f64, normal: f64, gamma: f64) -> Jump {
     let n2 = normal * normal;
     let pressure = 1.0 + 2.0 * gamma / (gamma + 1.0) * (n2 - 1.0);

@@ -1,27 +1,28 @@
-//! A thin plate that pitches and plunges in incompressible flow.
+//! A pitching and plunging thin plate in incompressible flow.
 //!
-//! Theodorsen (NACA report 496, 1935). With k = ωb/U, b half the chord, C(k) = H₁⁽²⁾/(H₁⁽²⁾ + iH₀⁽²⁾), the axis a half chords
-//! behind the middle and motions e^{+iωt}: plunge z = (displacement up)/b, pitch α nose up,
+//! Theodorsen (NACA report 496, 1935). With k = ωb/U, b the half chord, C(k) = H₁⁽²⁾/(H₁⁽²⁾ + iH₀⁽²⁾), the axis a half
+//! chords aft of mid-chord and motions e^{+iωt} in plunge z = (displacement up)/b and pitch α, positive nose up,
 //!
 //! c_l = π (k² z + ik α + a k² α) + 2πC [−ik z + α + (1/2 − a) ik α],
 //! c_m = (π/2) [a k² z − (1/2 − a) ik α + (1/8 + a²) k² α] + π (a + 1/2) C [−ik z + α + (1/2 − a) ik α],
 //!
-//! lift over q c, moment about the axis, nose up, over q c². Small amplitudes, no thickness, no stall, a smooth wake.
+//! with the lift divided by q c and the moment about the axis, positive nose up, divided by q c². Limits: small
+//! amplitudes, no thickness, no stall, a planar wake.
 use num_complex::Complex64;
 
 use super::Error;
 use super::bessel::modified_second;
 
-/// Complex coefficients of lift and moment.
+/// Complex amplitudes of the load coefficients.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PlateLoads {
-    /// Lift.
+    /// Lift coefficient.
     pub lift: Complex64,
-    /// Moment about the axis, nose up.
+    /// Moment coefficient about the axis, positive nose up.
     pub moment: Complex64,
 }
 
-/// Theodorsen's function C(k) = F + iG.
+/// Theodorsen's function C(k) = F + iG of the reduced frequency k ≥ 0; an error for any other k.
 pub fn theodorsen(k: f64) -> Result<Complex64, Error> {
     if !(0.0 <= k && k.is_finite()) {
         return Err(Error::Parameter { what: "reduced frequency", value: k, range: "a number that is not negative" });
@@ -35,14 +36,15 @@ pub fn theodorsen(k: f64) -> Result<Complex64, Error> {
     Ok(first / (first + Complex64::i() * zeroth))
 }
 
-/// Loads of a plate with reduced frequency `k` (of half the chord) and its axis `a` half chords behind the middle
-/// (−1/2: quarter chord), for the complex amplitudes `pitch` (radians, nose up) and `plunge` (up, over half the chord).
+/// Load coefficients of a plate at the reduced frequency `k` (on the half chord), with its axis `a` half chords aft of
+/// mid-chord (−1/2: quarter chord), for the complex amplitudes `pitch` (rad, nose up) and `plunge` (up, divided by the
+/// half chord). Returns an error if `k` is negative or not finite.
 pub fn plate(k: f64, a: f64, pitch: Complex64, plunge: Complex64) -> Result<PlateLoads, Error> {
     Ok(plate_loads(Complex64::new(0.0, k), theodorsen(k)?, a, [pitch, plunge]))
 }
 
-/// Theodorsen's function continued to motions e^{pUt/b} that grow or decay, C(p) = K₁/(K₀ + K₁) (Edwards, Ashley and Breakwell, AIAA J.
-/// 17, 1979); cut along the negative real axis.
+/// Theodorsen's function C(p) = K₁/(K₀ + K₁), continued to growing or decaying motions e^{pUt/b} (Edwards, Ashley and
+/// Breakwell, AIAA J. 17, 1979), with a branch cut along the negative real axis; an error if p is outside its range.
 pub fn theodorsen_growing(p: Complex64) -> Result<Complex64, Error> {
     if !p.is_finite() || (p.im == 0.0 && p.re < 0.0) {
         let range = "a number that is neither infinite nor real and negative";
@@ -55,12 +57,13 @@ pub fn theodorsen_growing(p: Complex64) -> Result<Complex64, Error> {
     Ok(first / (zeroth + first))
 }
 
-/// Loads of a plate as [`plate`] has them, for a motion e^{pUt/b}.
+/// Load coefficients of a plate as by [`plate`], for a motion e^{pUt/b}.
 pub fn plate_growing(p: Complex64, a: f64, pitch: Complex64, plunge: Complex64) -> Result<PlateLoads, Error> {
     Ok(plate_loads(p, theodorsen_growing(p)?, a, [pitch, plunge]))
 }
 
-/// Loads for the exponent p and C(p), which costs far more than all the rest: exact, or an approximation of it.
+/// Load coefficients for the exponent p and the value `c` of C(p), exact or approximate; the evaluation of C(p) is by
+/// far the largest cost.
 pub fn plate_loads(p: Complex64, c: Complex64, a: f64, [pitch, plunge]: [Complex64; 2]) -> PlateLoads {
     use std::f64::consts::PI;
     let square = -p * p;

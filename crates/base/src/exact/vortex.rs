@@ -1,12 +1,12 @@
 //! Advected isentropic vortex.
 //!
-//! In a uniform stream of density, pressure and temperature one the vortex
+//! In a uniform stream of unit density, pressure and temperature, the vortex
 //!
 //! δu = −β/2π e^{(1−r²)/2} (y − y_c), δv = β/2π e^{(1−r²)/2} (x − x_c), T = 1 − (γ−1)β²/(8γπ²) e^{1−r²},
 //!
-//! with ρ = T^{1/(γ−1)} and p = ρT, balances the centrifugal force and is carried along without change: an exact solution
-//! of the Euler equations, smooth everywhere. In a periodic box the nearest image of the vortex is taken, which leaves a
-//! kink of relative size e^{−L²/8} at the distance of half the box length L (4·10⁻⁶ for L = 10).
+//! with ρ = T^{1/(γ−1)} and p = ρT satisfies radial equilibrium and is advected without change: a smooth exact solution
+//! of the Euler equations. In a periodic box, the nearest image of the vortex is used, which leaves a kink of relative
+//! size e^{−L²/8} at half the box length L (4·10⁻⁶ for L = 10).
 //!
 //! Source: C.-W. Shu, *Essentially non-oscillatory and weighted essentially non-oscillatory schemes for hyperbolic
 //! conservation laws*, in LNM 1697 (1998), section 4.
@@ -27,27 +27,28 @@ pub struct IsentropicVortex {
 impl IsentropicVortex {
     /// A vortex of strength β that starts at `centre` and moves with `velocity`, in the whole plane.
     ///
-    /// Refuses strengths that empty the core: (γ−1)β² e < 8γπ² must hold (β < 10.08 for γ = 1.4).
+    /// Returns an error if the temperature in the core would not be positive: (γ−1)β² e < 8γπ² must hold (β < 10.08 for
+    /// γ = 1.4).
     pub fn new(strength: f64, centre: Vector<2>, velocity: Vector<2>, gamma: f64) -> Result<Self, Error> {
         check_gamma(gamma)?;
         if !(strength.is_finite() && core_temperature_drop(strength, gamma) * 1.0_f64.exp() < 1.0) {
-            let range = "a strength that leaves the core a positive temperature";
+            let range = "a strength for which the temperature in the core is positive";
             return Err(Error::Parameter { what: "strength of the vortex", value: strength, range });
         }
         Ok(Self { strength, centre, velocity, gamma, period: None })
     }
 
-    /// The same vortex in a box of edge lengths `period`, periodic on all sides.
+    /// This vortex in a box with the edge lengths `period`, periodic in all directions.
     pub fn periodic(self, period: Vector<2>) -> Self {
         Self { period: Some(period), ..self }
     }
 
-    /// Where the vortex stands at time `t`, not brought back into the box.
+    /// Centre of the vortex at time `t`, without periodic shift into the box.
     pub fn centre(&self, t: f64) -> Vector<2> {
         self.centre + self.velocity * t
     }
 
-    /// The gas at `x` and time `t`.
+    /// State of the gas at `x` and time `t`.
     pub fn state(&self, x: &Vector<2>, t: f64) -> GasState<2> {
         let d = self.nearest(*x - self.centre(t));
         let r2 = d.norm_squared();

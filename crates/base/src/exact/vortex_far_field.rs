@@ -1,12 +1,12 @@
-//! Point vortex in a subsonic free stream: the far field of a lifting section.
+//! Point vortex in a subsonic free stream: the far field of a lifting aerofoil.
 //!
-//! Far from a section of circulation Γ the linearised flow is a vortex stretched by the Prandtl-Glauert rule,
+//! Far from an aerofoil with the circulation Γ, the linearised flow is a vortex scaled by the Prandtl-Glauert rule,
 //!
 //! u = U cos α + F sin θ, v = U sin α − F cos θ, F = Γ β / (2π r (1 − M² sin²(θ − α))), β = √(1 − M²),
 //!
-//! (r, θ) polar about the vortex, Γ positive for lift (clockwise). Density and pressure follow from constant total enthalpy
-//! and entropy. The lift per span is ρUΓ (Kutta-Joukowski), so Γ = ½ CL c U; the error of a far field at r chords falls from
-//! O(1/r) to O(1/r²).
+//! (r, θ) are polar coordinates about the vortex, and Γ is positive for lift (clockwise). Density and pressure follow
+//! from constant total enthalpy and entropy. The lift per span is ρUΓ (Kutta-Joukowski), so that Γ = ½ CL c U. The
+//! error of a far field at a distance of r chords is reduced from O(1/r) to O(1/r²).
 //!
 //! Source: J. L. Thomas and M. D. Salas, *Far-field boundary conditions for transonic lifting solutions to the Euler
 //! equations*, AIAA Journal 24 (1986) 1074-1080.
@@ -15,10 +15,11 @@ use crate::math::Vector;
 use crate::math::jet::Scalar;
 use std::f64::consts::PI;
 
-/// Least temperature over free-stream temperature: keeps the state finite near the core, where the formula means nothing.
+/// Minimum ratio of the temperature to that of the free stream; it keeps the state finite near the core, where the
+/// formula is not valid.
 const LEAST_TEMPERATURE: f64 = 0.1;
 
-/// A lifting free stream.
+/// A free stream with a point vortex.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FarFieldVortex {
     free_stream: GasState<2>,
@@ -29,14 +30,14 @@ pub struct FarFieldVortex {
     direction: Vector<2>,
 }
 
-/// Circulation that carries the lift coefficient `lift` on `chord` at free-stream speed `speed`: Γ = ½ CL c U.
+/// Circulation Γ = ½ CL c U for the lift coefficient `lift`, the chord `chord` and the free-stream speed `speed`.
 pub fn circulation_of_lift(lift: f64, chord: f64, speed: f64) -> f64 {
     0.5 * lift * chord * speed
 }
 
 impl FarFieldVortex {
-    /// The field of a vortex of strength `circulation` (positive lifts) at `centre`; the free stream must be subsonic and
-    /// move.
+    /// Field of a vortex with the strength `circulation` (positive for lift) at `centre`. Returns an error if the free
+    /// stream is not physical, at rest or not subsonic.
     pub fn new(free_stream: GasState<2>, gamma: f64, circulation: f64, centre: Vector<2>) -> Result<Self, Error> {
         check_gamma(gamma)?;
         let GasState { density, velocity, pressure } = free_stream;
@@ -51,12 +52,12 @@ impl FarFieldVortex {
         Ok(Self { free_stream, gamma, circulation, centre, mach_squared: mach * mach, direction })
     }
 
-    /// The same field with another circulation.
+    /// This field with another circulation.
     pub fn with_circulation(self, circulation: f64) -> Self {
         Self { circulation, ..self }
     }
 
-    /// Velocity at `x` less the free stream's; zero at the centre itself.
+    /// Velocity at `x` minus that of the free stream; zero at the centre.
     pub fn velocity_increment(&self, x: &Vector<2>) -> Vector<2> {
         self.increment(x, self.circulation)
     }
@@ -67,19 +68,19 @@ impl FarFieldVortex {
         if r2 == 0.0 {
             return Vector::zero();
         }
-        // r sin(θ − α) is the distance from the line of flight
+        // r sin(θ − α) is the distance from the line through the vortex along the free stream
         let across = self.direction[0] * d[1] - self.direction[1] * d[0];
         let stretched = r2 - self.mach_squared * across * across;
         let strength = circulation * ((1.0 - self.mach_squared).sqrt() / (2.0 * PI * stretched));
         Vector([strength * d[1], strength * -d[0]])
     }
 
-    /// The gas at `x`.
+    /// State of the gas at `x`.
     pub fn state(&self, x: &Vector<2>) -> GasState<2> {
         self.state_of(x, self.circulation)
     }
 
-    /// The gas at `x` where the circulation is `circulation`.
+    /// State of the gas at `x` for the circulation `circulation`.
     pub fn state_of<S: Scalar>(&self, x: &Vector<2>, circulation: S) -> GasState<2, S> {
         let free = &self.free_stream;
         let velocity = Vector::constant(&free.velocity) + self.increment(x, circulation);
@@ -140,7 +141,7 @@ mod tests {
             assert!((enthalpy(&s) - enthalpy(&far)).abs() < 1e-9);
             assert!((s.pressure / s.density.powf(1.4) * 1.4 - 1.0).abs() < 1e-12);
         }
-        // lift speeds the flow up above and slows it below
+        // lift increases the speed above and decreases it below
         assert!(f.state(&Vector([0.25, 5.0])).pressure < f.state(&Vector([0.25, -5.0])).pressure);
     }
 

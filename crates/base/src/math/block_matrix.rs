@@ -1,10 +1,11 @@
-//! Sparse matrices of small dense blocks: what implicit steps are preconditioned with.
+//! Sparse matrices of small dense blocks, for the preconditioners of implicit steps.
 //!
-//! Rows are particles. Each block is stored column by column, diagonal blocks in single precision, the others as whole numbers
-//! from -127 to 127 of one unit a block: they only steer the linear solver, and sweeps run as fast as blocks are read. What
-//! rounding takes from a block goes to the diagonal of its row. Unknowns are to be scaled so that the entries of a block are of
-//! one size ([`BlockMatrix::assemble`]). Sweeps are Gauss-Seidel inside fixed parts of consecutive rows and Jacobi between them, so
-//! that the result does not depend on the number of threads.
+//! Each row belongs to a particle. Blocks are stored column by column: diagonal blocks in single precision,
+//! off-diagonal blocks as integers from -127 to 127 times one unit for each block. This precision suffices for a
+//! preconditioner, and the cost of a sweep is the time to read the blocks. The rounding error of a block is added to
+//! the diagonal of its row. Unknowns should be scaled so that the entries of a block have similar magnitudes
+//! ([`BlockMatrix::assemble`]). Sweeps are Gauss-Seidel inside fixed parts of consecutive rows and Jacobi between
+//! parts, so that the result does not depend on the number of threads.
 mod rows;
 
 use std::ops::Range;
@@ -18,82 +19,82 @@ use super::rounded::{LANES, UNIT, add_block, leading, load, load_lanes, multiply
 
 pub use rows::Rows;
 
-/// Fewest and most rows in one part of a coarse matrix.
+/// Minimum and maximum number of rows in one part of a coarse matrix.
 const PART: [usize; 2] = [64, 1024];
-/// Parts that a coarse matrix has where they are not smaller than that.
+/// Number of parts of a coarse matrix, unless the parts would be smaller than the minimum.
 const MANY_PARTS: usize = 8;
 
-/// Blocks of a row of a coarse matrix that are summed at a time.
+/// Number of blocks of a row of a coarse matrix that are summed at a time.
 const WINDOW: usize = 64;
 
 /// A sparse matrix of square blocks.
 #[derive(Clone, Debug, Default)]
 pub struct BlockMatrix {
     block: usize,
-    /// Of each row its first entry; the number of all.
+    /// Index of the first entry of each row, followed by the number of all entries.
     first: Arc<Vec<u32>>,
     column: Columns,
-    /// Of each row, counted from its first entry: the first one inside its part, the first one beyond the diagonal, the first one after
-    /// its part.
+    /// For each row, three positions relative to its first entry: the first entry inside its part, the first one after
+    /// the diagonal, and the first one after its part.
     cut: Vec<[u16; 3]>,
-    /// Of each off-diagonal block its unit and its entries; [`LANES`] more at the end.
+    /// Unit and entries of each off-diagonal block, followed by [`LANES`] unused entries.
     value: Vec<u8>,
-    /// Diagonal blocks as they were assembled, or their inverses once [`Self::make_sweepable`] was called.
+    /// Diagonal blocks as assembled, or their inverses after [`Self::make_sweepable`].
     diagonal: Vec<f32>,
-    /// Their inverses beside them, where [`Self::invert_diagonal`] made them.
+    /// Inverses of the diagonal blocks after [`Self::invert_diagonal`], else empty.
     inverse: Vec<f32>,
     parts: Vec<Range<usize>>,
     value_parts: Vec<Range<usize>>,
-    /// Weight with which assemblies add to what is there; `None`: they make blocks anew.
+    /// Weight of each assembly in a mean; `None` if an assembly replaces the blocks.
     weight: Option<f32>,
-    /// Sizes of the unknowns of a row: inside, each counts in its own.
+    /// Magnitudes of the unknowns of a row; the stored blocks refer to unknowns divided by them.
     scale: Vec<f32>,
 }
 
-/// The columns of each row beside its own, in ascending order: the beginnings of lists that others may read too.
+/// Off-diagonal columns of each row in ascending order. The lists may be shared with other owners.
 #[derive(Clone, Debug, Default)]
 struct Columns {
-    /// Where the list of each row begins.
+    /// Start of the list of each row.
     start: Arc<Vec<u32>>,
     list: Arc<Vec<u32>>,
 }
 
 impl Columns {
-    /// Those of row `i` of a matrix with these first entries.
+    /// Columns of row `i` of a matrix with these first entries.
     #[inline(always)]
     fn of(&self, i: usize, first: &[u32]) -> &[u32] {
         let start = self.start[i] as usize;
         &self.list[start..start + (first[i + 1] - first[i]) as usize]
     }
 
-    /// Bytes that are not those of others.
+    /// Memory that is not shared with other owners (bytes).
     fn bytes(&self) -> usize {
         if Arc::strong_count(&self.list) == 1 { 4 * self.list.len() } else { 0 }
     }
 }
 
-/// An approximate solution of A x = b and the sums that its sweeps share.
+/// An approximate solution of A x = b, with the partial sums that successive sweeps reuse.
 #[derive(Clone, Debug, Default)]
 pub struct Sweeps {
-    /// Right-hand side.
+    /// Right-hand side b.
     pub b: Vec<f32>,
-    /// Solution.
+    /// Solution x.
     pub x: Vec<f32>,
-    /// Scratch: solution before a half-sweep.
+    /// Working storage: the solution before a half-sweep.
     old: Vec<f32>,
-    /// Of each row: sums over the columns of the same part on one side of the diagonal, those that the last half-sweep went through;
-    /// or b − A x.
+    /// For each row, the sum over the columns of the same part on the side of the diagonal that the last half-sweep
+    /// visited, or the residual b − A x.
     pub side: Vec<f32>,
 }
 
 impl Sweeps {
-    /// Storage for the rows of `matrix`.
+    /// Creates storage for the rows of `matrix`.
     pub fn new(matrix: &BlockMatrix) -> Self {
         let zero = vec![0.0; matrix.n_rows() * matrix.block];
         Self { b: zero.clone(), x: zero.clone(), old: zero.clone(), side: zero }
     }
 
-    /// Bytes held.
+    /// Memory in use (bytes).
     pub fn bytes(&self) -> usize {
         16 * self.b.len()
     }
@@ -106,14 +107,16 @@ impl Sweeps {
 }
 
 impl BlockMatrix {
-    /// A matrix with `n` rows whose row i couples to the columns `index[first[i]..first[i + 1]]` below `n`, in ascending order, and to
-    /// itself. Lists that do not hold i are kept as they are, not copied: in space they are an eighth of the matrix.
+    /// Creates a matrix in which row i couples to itself and to the columns `index[first[i]..first[i + 1]]`, in
+    /// ascending order and smaller than the number of rows. Lists that do not contain i are shared, not copied: in 3-D
+    /// they take an eighth of the memory of the matrix.
     ///
-    /// `parts` are the consecutive rows that are assembled and swept together.
+    /// `parts` are the ranges of consecutive rows that are assembled and swept together.
     ///
     /// # Panics
     ///
-    /// Where no kernel serves blocks of that order, see [`super::blocks`], or a row couples to more than 65,535 others.
+    /// If no kernel exists for blocks of that order, see [`super::blocks`], or a row couples to more than 65,535
+    /// others.
     pub fn new(block: usize, parts: &[Range<usize>], first: &Arc<Vec<u32>>, index: &Arc<Vec<u32>>) -> Self {
         super::blocks::assert_served(block);
         let n = parts.last().map_or(0, |p| p.end);
@@ -136,7 +139,7 @@ impl BlockMatrix {
         Self::from_lists(block, ends, list, parts.to_vec())
     }
 
-    /// `list` holds the columns of each row beside its own, in ascending order.
+    /// Creates the matrix from `list`, the off-diagonal columns of each row in ascending order.
     fn from_lists(block: usize, first: Vec<u32>, mut list: Vec<u32>, parts: Vec<Range<usize>>) -> Self {
         list.shrink_to_fit();
         let first = Arc::new(first);
@@ -164,24 +167,24 @@ impl BlockMatrix {
         }
     }
 
-    /// The same with unknowns of these sizes, which come into what is assembled, and out of what is solved by
-    /// [`Self::enter`] and [`Self::leave`].
+    /// This matrix for unknowns of the magnitudes `scale`. Assembly scales the blocks; [`Self::enter`] and
+    /// [`Self::leave`] convert right-hand sides and solutions.
     ///
     /// # Panics
     ///
-    /// Where there are not as many as a row has unknowns.
+    /// If the length of `scale` is not the number of unknowns of a row.
     pub fn scaled(self, scale: &[f64]) -> Self {
         assert_eq!(scale.len(), self.block);
         Self { scale: scale.iter().map(|s| *s as f32).collect(), ..self }
     }
 
-    /// Turns right-hand sides, row after row, into those of the scaled matrix.
+    /// Converts right-hand sides, row by row, to those of the scaled matrix.
     #[inline(always)]
     pub fn enter(&self, b: &mut [f32]) {
         b.chunks_exact_mut(self.block).for_each(|b| b.iter_mut().zip(&self.scale).for_each(|(b, s)| *b /= s));
     }
 
-    /// Entry `k` of a solution of the scaled matrix, unscaled.
+    /// Entry `k` of a solution of the scaled matrix, converted to the original unknowns.
     #[inline(always)]
     pub fn leave(&self, x: &[f32], k: usize) -> f32 {
         x[k] * self.scale[k % self.block]
@@ -194,7 +197,7 @@ impl BlockMatrix {
         fill(&mut self.diagonal, 0.0);
     }
 
-    /// From here on assemblies make all blocks anew.
+    /// Ends a mean: later assemblies replace the blocks.
     pub fn end_mean(&mut self) {
         self.weight = None;
     }
@@ -209,7 +212,7 @@ impl BlockMatrix {
         self.block
     }
 
-    /// Bytes held.
+    /// Memory in use (bytes).
     pub fn bytes(&self) -> usize {
         self.value.len()
             + self.column.bytes()
@@ -217,14 +220,14 @@ impl BlockMatrix {
             + 6 * self.cut.len()
     }
 
-    /// Parts in which rows are assembled and swept.
+    /// Ranges of rows that are assembled and swept together.
     pub fn parts(&self) -> &[Range<usize>] {
         &self.parts
     }
 
-    /// Calls `f(k, rows)` for every part; `rows` adds to the blocks of the rows of part `k`, which are zero at first.
+    /// Calls `f(k, rows)` for every part k, where `rows` adds to the blocks of its rows, which are initially zero.
     ///
-    /// An entry smaller than a 254th of the largest one of its off-diagonal block is lost there.
+    /// An entry smaller than 1/254 of the largest entry of its off-diagonal block is rounded to zero.
     pub fn assemble(&mut self, f: impl Fn(usize, &mut Rows<'_>) + Sync) {
         let (first, column, block, parts) = (&self.first, &self.column, self.block, &self.parts);
         let (size, weight) = (block * block, self.weight);
@@ -244,7 +247,7 @@ impl BlockMatrix {
         });
     }
 
-    /// Adds `shift(i)` to the diagonal of row i.
+    /// Adds `shift(i)` to the diagonal entries of row i.
     pub fn shift(&mut self, shift: impl Fn(usize) -> f64 + Sync) {
         let n = self.block;
         sweep_rows(&mut self.diagonal, n * n, |i, diagonal| {
@@ -253,13 +256,13 @@ impl BlockMatrix {
         });
     }
 
-    /// Puts the inverses of the diagonal blocks in their place: needed before a sweep, and undone by the next assembly.
+    /// Replaces the diagonal blocks by their inverses. Sweeps need this; the next assembly restores the blocks.
     pub fn make_sweepable(&mut self) {
         let (block, size) = (self.block, self.block * self.block);
         sweep_rows(&mut self.diagonal, size, |_, own| invert_block(block, own));
     }
 
-    /// Makes the inverses of the diagonal blocks beside them.
+    /// Computes the inverses of the diagonal blocks and keeps the blocks as well.
     pub fn invert_diagonal(&mut self) {
         let (block, size) = (self.block, self.block * self.block);
         self.inverse.resize(self.diagonal.len(), 0.0);
@@ -267,10 +270,10 @@ impl BlockMatrix {
         sweep_rows(&mut self.inverse, size, |_, own| invert_block(block, own));
     }
 
-    /// One forward and one backward sweep for A x = b, starting from `s.x`.
+    /// Performs one forward and one backward sweep for A x = b, starting from `s.x`.
     ///
-    /// The forward sweep needs the sums over the columns after the diagonal, which the backward sweep before it has formed,
-    /// and the other way round (Conrad and Wallach 1979): each half-sweep goes through half of the blocks.
+    /// The forward sweep needs the sums over the columns after the diagonal, which the preceding backward sweep has
+    /// computed, and vice versa (Conrad and Wallach 1979). Each half-sweep therefore visits only half of the blocks.
     pub fn symmetric_sweep(&self, s: &mut Sweeps) {
         with_block!(self.block, N => self.both_sweeps::<N>(s))
     }
@@ -286,7 +289,7 @@ impl BlockMatrix {
         }
     }
 
-    /// x_i = A_ii⁻¹ (b_i − Σ_j A_ij x_j).
+    /// Computes x_i = A_ii⁻¹ (b_i − Σ_j A_ij x_j).
     #[inline(always)]
     fn relax_row<const N: usize>(
         &self,
@@ -316,54 +319,54 @@ impl BlockMatrix {
         store(&y, &mut x[at..]);
     }
 
-    /// Entries of row `i` before, in and after its part.
+    /// Ranges of the entries of row `i` before, inside and after its part.
     #[inline(always)]
     pub(super) fn split_row(&self, i: usize) -> (Range<usize>, Range<usize>, Range<usize>) {
         let (first, [from, _, to]) = (self.first[i] as usize, self.cut[i].map(usize::from));
         (first..first + from, first + from..first + to, first + to..self.first[i + 1] as usize)
     }
 
-    /// The columns of the entries of row `i`.
+    /// Columns of the entries of row `i`.
     #[inline(always)]
     pub(super) fn columns_by_entry(&self, i: usize) -> impl Fn(usize) -> usize + Copy + '_ {
         let (columns, first) = (self.columns(i), self.first[i] as usize);
         move |e| columns[e - first] as usize
     }
 
-    /// The entry of row `i` in column `j`.
+    /// Index of the entry of row `i` in column `j`; `None` if the pattern has no such entry.
     pub(super) fn entry(&self, i: usize, j: usize) -> Option<usize> {
         self.columns(i).binary_search(&(j as u32)).ok().map(|k| self.first[i] as usize + k)
     }
 
-    /// The first entry of row `i` inside its part beyond its diagonal.
+    /// Index of the first entry of row `i` inside its part after the diagonal.
     #[inline(always)]
     pub(super) fn middle(&self, i: usize) -> usize {
         self.first[i] as usize + usize::from(self.cut[i][1])
     }
 
-    /// Diagonal block of row `i`, by columns, as it was assembled: not after [`Self::make_sweepable`].
+    /// Diagonal block of row `i`, stored by columns, as assembled; not valid after [`Self::make_sweepable`].
     #[inline(always)]
     pub(super) fn diagonal(&self, i: usize) -> &[f32] {
         &self.diagonal[i * self.block * self.block..(i + 1) * self.block * self.block]
     }
 
-    /// Its inverse.
+    /// Inverse of the diagonal block of row `i`, stored by columns.
     #[inline(always)]
     pub(super) fn inverse(&self, i: usize) -> &[f32] {
         &self.inverse[i * self.block * self.block..(i + 1) * self.block * self.block]
     }
 
-    /// Unit and entries of entry `e`, and what follows them.
+    /// Unit and entries of entry `e`, together with the bytes that follow.
     #[inline(always)]
     pub(super) fn off_diagonal<const N: usize>(&self, e: usize) -> &[u8] {
         let at = e * (UNIT + N * N);
         &self.value[at..at + UNIT + (N - 1) * N + LANES]
     }
 
-    /// s.side = b − A x after a sweep.
+    /// Computes s.side = b − A x after a sweep.
     ///
-    /// The backward half-sweep solved every row with what the others were then: what is left of it is what those that it had yet to reach,
-    /// and those of other parts, have changed by since.
+    /// The backward half-sweep solved every row with the values of the other rows at that time. The residual of a row
+    /// therefore follows from the later changes of the rows that were not yet visited and of those in other parts.
     pub fn residual(&self, s: &mut Sweeps) {
         with_block!(self.block, N => self.residual_of::<N>(s))
     }
@@ -373,7 +376,7 @@ impl BlockMatrix {
         sweep_parts(&self.parts, N, &mut s.side, &|k, out| residual_part::<N>(self, &self.parts[k], (x, old), out));
     }
 
-    /// A x of the matrix as it was assembled.
+    /// Product A x with the assembled matrix.
     #[cfg(test)]
     pub(super) fn product(&self, x: &[f32]) -> Vec<f32> {
         with_block!(self.block, N => {
@@ -390,7 +393,7 @@ impl BlockMatrix {
         })
     }
 
-    /// Forms the sums that a forward sweep starts from, after `s.x` was changed from outside.
+    /// Recomputes the partial sums that a forward sweep needs, after a change of `s.x` by the caller.
     pub fn restart(&self, s: &mut Sweeps) {
         with_block!(self.block, N => self.restart_of::<N>(s))
     }
@@ -400,7 +403,7 @@ impl BlockMatrix {
         sweep_parts(&self.parts, N, &mut s.side, &|k, out| restart_part::<N>(self, &self.parts[k], x, out));
     }
 
-    /// The pattern of the matrix that couples groups of rows.
+    /// Pattern of the matrix that couples groups of rows.
     pub fn coarse(&self, group: &[u32], n_groups: usize) -> Self {
         let mut members: Vec<Vec<u32>> = vec![Vec::new(); n_groups];
         group.iter().enumerate().for_each(|(i, g)| members[*g as usize].push(i as u32));
@@ -420,8 +423,8 @@ impl BlockMatrix {
         Self { scale: self.scale.clone(), ..Self::from_lists(self.block, first, column, parts) }
     }
 
-    /// Makes each row of this matrix the mean of rows of `fine`: `members(g)` are those of group g in ascending order, `group` says
-    /// to which each row belongs and `share` with what part it counts there.
+    /// Sets each row of this matrix to the weighted mean of rows of `fine`. `members(g)` are the rows of group g in
+    /// ascending order; `group` gives the group of each row and `share` its weight in the group.
     pub fn gather<'a>(
         &mut self,
         fine: &Self,
@@ -472,13 +475,13 @@ impl BlockMatrix {
         });
     }
 
-    /// Columns of row `i` beside its own, in ascending order.
+    /// Off-diagonal columns of row `i`, in ascending order.
     pub fn columns(&self, i: usize) -> &[u32] {
         self.column.of(i, &self.first)
     }
 }
 
-/// A half-sweep over one part.
+/// Half-sweep over one part.
 #[multiversion(targets("x86_64+avx512f+avx512vl+avx512dq", "x86_64+avx2"))]
 #[allow(unsafe_code, reason = "the attribute calls the version that the processor has just been asked for")]
 fn relax_part<const N: usize>(
@@ -494,7 +497,7 @@ fn relax_part<const N: usize>(
     }
 }
 
-/// What is left of the right-hand side in the rows of one part, see [`BlockMatrix::residual`].
+/// Residual of the rows of one part, see [`BlockMatrix::residual`].
 #[multiversion(targets("x86_64+avx512f+avx512vl+avx512dq", "x86_64+avx2"))]
 #[allow(unsafe_code, reason = "the attribute calls the version that the processor has just been asked for")]
 fn residual_part<const N: usize>(
@@ -515,7 +518,7 @@ fn residual_part<const N: usize>(
     }
 }
 
-/// The sums that a forward sweep over one part starts from.
+/// Partial sums of one part that a forward sweep needs.
 #[multiversion(targets("x86_64+avx512f+avx512vl+avx512dq", "x86_64+avx2"))]
 #[allow(unsafe_code, reason = "the attribute calls the version that the processor has just been asked for")]
 fn restart_part<const N: usize>(matrix: &BlockMatrix, part: &Range<usize>, x: &[f32], out: &mut [f32]) {
@@ -530,7 +533,7 @@ fn restart_part<const N: usize>(matrix: &BlockMatrix, part: &Range<usize>, x: &[
     }
 }
 
-/// Where the entries of row `i`, in the columns `row`, enter its part, pass the diagonal and leave the part.
+/// Positions in the columns `row` of row `i` at which its part begins, the diagonal is passed and the part ends.
 fn cut(i: usize, part: &Range<usize>, row: &[u32]) -> [u16; 3] {
     assert!(row.len() <= usize::from(u16::MAX), "a row of {} blocks", row.len());
     [part.start, i, part.end].map(|limit| row.partition_point(|j| (*j as usize) < limit) as u16)
@@ -540,7 +543,7 @@ fn cut(i: usize, part: &Range<usize>, row: &[u32]) -> [u16; 3] {
 mod tests {
     use super::*;
 
-    /// Two rows that see one another, with unknowns of these sizes.
+    /// Two coupled rows with unknowns of these magnitudes.
     fn pair(scale: [f64; 2], entry: impl Fn(usize, usize) -> f64 + Sync) -> BlockMatrix {
         let mut matrix =
             BlockMatrix::new(2, std::slice::from_ref(&(0..2)), &Arc::new(vec![0, 1, 2]), &Arc::new(vec![1, 0]))
@@ -554,7 +557,7 @@ mod tests {
         matrix
     }
 
-    /// A x for the unscaled unknowns `x` of each row.
+    /// Product A x for the unscaled unknowns `x` of each row.
     fn product(matrix: &BlockMatrix, x: [f32; 2]) -> [f32; 2] {
         let mut x = [x, x].concat();
         matrix.enter(&mut x);
@@ -572,7 +575,7 @@ mod tests {
 
     #[test]
     fn unknowns_of_different_sizes_are_all_kept() {
-        // entries a thousand times apart, in the units of unknowns of one size
+        // entries that differ by a factor of 1000, for unknowns of equal units
         let scale = [1.0, 1000.0];
         let entry = |r: usize, c: usize| [[-1.0, 0.3], [0.1, -0.6]][r][c] * scale[r] / scale[c];
         for x in [[1.0, 0.0], [0.0, 1000.0]] {

@@ -1,32 +1,33 @@
-//! Orders of the small dense blocks that sparse matrices are made of.
+//! Supported orders of the small dense blocks of sparse matrices.
 //!
-//! Kernels are compiled for each order that some physics has: one for a scalar, two for an oscillator, three for a transported
-//! pair with its time, four and five for a gas in the plane and in space, six for gas with a model of turbulence and for solids in
-//! space. Any other order is refused when a matrix is made; none falls to a kernel of another order.
+//! Kernels are compiled for the orders that the physics uses: one for a scalar, two for an oscillator, three for a
+//! turbulence model of two variables with their time scale, four and five for a gas in 2-D and 3-D, six for a gas with
+//! turbulence model and for solids in 3-D. A matrix of any other order cannot be created.
 
-/// Orders that kernels serve.
+/// Block orders for which kernels exist.
 pub const SERVED: std::ops::RangeInclusive<usize> = 1..=6;
 
-/// Entries of the largest block.
+/// Number of entries of the largest block.
 pub const MOST_ENTRIES: usize = 36;
 
-/// Refuses an order that no kernel serves.
+/// Panics for a block order without a kernel.
 ///
 /// # Panics
 ///
-/// Outside [`SERVED`].
+/// If `block` is outside [`SERVED`].
 pub fn assert_served(block: usize) {
     assert!(SERVED.contains(&block), "{}", not_served(block));
 }
 
-/// What to say of an order that no kernel serves.
+/// Message for a block order without a kernel.
 pub(super) fn not_served(block: usize) -> String {
     format!("no kernel serves blocks of {block} unknowns, only {SERVED:?}; a new order is added in `math::blocks`")
 }
 
 /// The array whose entry `k` is `f(k)`.
 ///
-/// A plain loop, so that it becomes part of the kernel around it: what the standard library has for this is compiled apart from it.
+/// This is a plain loop, so that the compiler inlines it into the kernel; the function of the standard library is
+/// compiled separately.
 #[inline(always)]
 pub fn array<T: Copy, const N: usize>(mut f: impl FnMut(usize) -> T) -> [T; N] {
     let mut out = [f(0); N];
@@ -38,13 +39,13 @@ pub fn array<T: Copy, const N: usize>(mut f: impl FnMut(usize) -> T) -> [T; N] {
     out
 }
 
-/// Writes the numbers of a block's row or column to the start of `out`.
+/// Copies the row or column of a block to the start of `out`.
 #[inline(always)]
 pub(super) fn store<const N: usize>(values: &[f32; N], out: &mut [f32]) {
     out[..N].copy_from_slice(values);
 }
 
-/// Inverts a block of order `n` in its place.
+/// Inverts a block of order `n` in place.
 pub(super) fn invert_block(n: usize, own: &mut [f32]) {
     let (mut block, mut inverse) = ([0.0; MOST_ENTRIES].map(f64::from), [0.0; MOST_ENTRIES].map(f64::from));
     block.iter_mut().zip(&*own).for_each(|(b, o)| *b = f64::from(*o));
@@ -52,7 +53,7 @@ pub(super) fn invert_block(n: usize, own: &mut [f32]) {
     own.iter_mut().zip(&inverse).for_each(|(o, i)| *o = *i as f32);
 }
 
-/// Inverse of a small matrix by Gauss-Jordan elimination with row pivoting; a singular one gives the zero matrix.
+/// Inverse of a small matrix by Gauss-Jordan elimination with row pivoting; a singular matrix gives the zero matrix.
 pub(super) fn invert(n: usize, a: &[f64], out: &mut [f64]) {
     let mut m = [[0.0f64; 12]; 6];
     for r in 0..n {

@@ -1,9 +1,10 @@
-//! Sweeps for linear systems that repeat in time: (A + ∂/∂t) x = b at 2N + 1 instances of a period.
+//! Sweeps for linear systems that are periodic in time: (A + ∂/∂t) x = b at the 2N + 1 instances of a period.
 //!
-//! With one matrix A for all instances the system is block-circulant: in Fourier coefficients of time it falls apart into
-//! A x_0 = b_0 and, for each harmonic, (A + imω) z_m = r_m with z = c − is for c cos mωt + s sin mωt (Mavriplis and Mundis,
-//! AIAA 2014-0571). All harmonics share the blocks beside the diagonal, which a sweep reads once for all of them; each has
-//! its own inverse of the diagonal, S A − imω S with S = (A² + m²ω²)⁻¹. Sweeps run as those of [`BlockMatrix`], in the same parts.
+//! With the same matrix A at all instances, the system is block-circulant. Its Fourier coefficients in time decouple: A
+//! x_0 = b_0 for the mean, and (A + imω) z_m = r_m for each harmonic, with z = c − is for c cos mωt + s sin mωt
+//! (Mavriplis and Mundis, AIAA 2014-0571). All harmonics have the same off-diagonal blocks, which a sweep reads once
+//! for all of them. The inverse of the diagonal differs for each harmonic: S A − imω S with S = (A² + m²ω²)⁻¹. Sweeps
+//! use the same parts and order as those of [`BlockMatrix`].
 use std::ops::Range;
 
 use multiversion::multiversion;
@@ -13,32 +14,32 @@ use super::blocks::{store, with_block};
 use super::parallel::{copy, fill, sweep_parts, sweep_two_parts};
 use super::rounded::{LANES, Lanes, leading, load, multiply, subtract_wide, widen_block};
 
-/// Greatest number of harmonics.
+/// Maximum number of harmonics.
 pub const MOST_HARMONICS: usize = 16;
-/// Greatest number of coefficients of a row.
+/// Maximum number of coefficients of a row.
 const MOST: usize = 2 * MOST_HARMONICS + 1;
 
-/// Coefficients of the solution of (A + ∂/∂t) x = b in the order mean, cosine and sine of the first harmonic, of the
-/// second, ..., and what their sweeps share.
+/// Fourier coefficients of the solution of (A + ∂/∂t) x = b, in the order mean, cosine and sine of the first harmonic,
+/// of the second, ..., with the partial sums that successive sweeps reuse.
 #[derive(Clone, Debug)]
 pub struct HarmonicSweeps {
     harmonics: usize,
-    /// The mean is sought as well; else it is zero and left alone.
+    /// True if the mean is an unknown; else it is zero and stays zero.
     mean: bool,
     omega: f32,
-    /// Right-hand side.
+    /// Right-hand side b.
     pub b: Vec<f32>,
-    /// Solution.
+    /// Solution x.
     pub x: Vec<f32>,
-    /// Scratch: solution before a half-sweep, or b − (A + ∂/∂t) x.
+    /// Working storage: the solution before a half-sweep, or the residual b − (A + ∂/∂t) x.
     pub r: Vec<f32>,
     side: Vec<f32>,
-    /// Real and negative imaginary part of (A_ii + imω)⁻¹ for each harmonic.
+    /// Real part and negative imaginary part of (A_ii + imω)⁻¹ for each harmonic.
     inverse: Vec<f32>,
 }
 
 impl HarmonicSweeps {
-    /// Storage for the rows of `matrix`; without `mean` nothing but harmonics is sought.
+    /// Creates storage for the rows of `matrix`; without `mean`, only the harmonics are unknowns.
     pub fn new(matrix: &BlockMatrix, harmonics: usize, omega: f64, mean: bool) -> Self {
         let (n, size) = (matrix.n_rows(), matrix.block());
         let zero = vec![0.0; n * size * (2 * harmonics + 1)];
@@ -47,12 +48,12 @@ impl HarmonicSweeps {
         Self { harmonics, mean, omega, b: zero.clone(), x: zero.clone(), r: zero.clone(), side: zero, inverse }
     }
 
-    /// Number of coefficients in time.
+    /// Number of Fourier coefficients in time.
     pub fn count(&self) -> usize {
         2 * self.harmonics + 1
     }
 
-    /// Bytes held.
+    /// Memory in use (bytes).
     pub fn bytes(&self) -> usize {
         4 * (4 * self.b.len() + self.inverse.len())
     }
@@ -63,7 +64,7 @@ impl HarmonicSweeps {
         fill(&mut self.side, 0.0);
     }
 
-    /// Inverts the diagonal of each harmonic: needed before a sweep, after that of the matrix.
+    /// Inverts the diagonal of each harmonic. Sweeps need this, after the inversion of the diagonal of the matrix.
     pub fn invert(&mut self, matrix: &BlockMatrix) {
         let (block, harmonics) = (matrix.block(), self.harmonics);
         let size = block * block;
@@ -81,7 +82,7 @@ impl HarmonicSweeps {
         });
     }
 
-    /// One forward and one backward sweep, starting from `x`.
+    /// Performs one forward and one backward sweep, starting from `x`.
     pub fn symmetric_sweep(&mut self, matrix: &BlockMatrix) {
         match (matrix.block(), self.count(), self.mean) {
             (4, 3, false) => self.both_sweeps::<4, 3, 1>(matrix),
@@ -96,7 +97,7 @@ impl HarmonicSweeps {
         }
     }
 
-    /// Of the coefficients from number `FIRST` on.
+    /// Sweeps the coefficients from index `FIRST` on.
     fn both_sweeps<const N: usize, const COUNT: usize, const FIRST: usize>(&mut self, matrix: &BlockMatrix) {
         let width = N * self.count();
         for forward in [true, false] {
@@ -109,7 +110,7 @@ impl HarmonicSweeps {
         }
     }
 
-    /// r = b − (A + ∂/∂t) x.
+    /// Computes r = b − (A + ∂/∂t) x.
     pub fn residual(&mut self, matrix: &BlockMatrix) {
         match self.mean {
             true => with_block!(matrix.block(), N => self.residual_of::<N, 0>(matrix)),
@@ -125,7 +126,7 @@ impl HarmonicSweeps {
         });
     }
 
-    /// Forms the sums that a forward sweep starts from, after `x` was changed from outside.
+    /// Recomputes the partial sums that a forward sweep needs, after a change of `x` by the caller.
     pub fn restart(&mut self, matrix: &BlockMatrix) {
         with_block!(matrix.block(), N => self.restart_of::<N>(matrix))
     }
@@ -139,7 +140,7 @@ impl HarmonicSweeps {
     }
 }
 
-/// b − (A + ∂/∂t) x over one part; right-hand side, solution and the sums of the last half-sweep are known.
+/// Residual b − (A + ∂/∂t) x of one part, from the right-hand side, the solution and the sums of the last half-sweep.
 #[multiversion(targets("x86_64+avx2"))]
 #[allow(unsafe_code, reason = "the attribute calls the version that the processor has just been asked for")]
 fn residual_of_part<const N: usize, const FIRST: usize>(
@@ -161,7 +162,7 @@ fn residual_of_part<const N: usize, const FIRST: usize>(
         for (c, sum) in sum.iter_mut().enumerate().skip(FIRST) {
             let mut own = [0.0; N];
             multiply::<N>(matrix.diagonal(i), &load::<N>(x, at + c), &mut own);
-            // d/dt of a cosine feeds the sine and the other way round
+            // the time derivative of a cosine contributes to the sine, and vice versa
             let beta = c.div_ceil(2) as f32 * omega;
             let (partner, beta) = if c % 2 == 1 { (c + 1, beta) } else { (c.max(1) - 1, -beta) };
             let other = load::<N>(x, at + partner);
@@ -173,7 +174,7 @@ fn residual_of_part<const N: usize, const FIRST: usize>(
     }
 }
 
-/// Sums over the columns beyond the diagonal inside one part.
+/// Sums over the columns after the diagonal inside one part.
 #[multiversion(targets("x86_64+avx2"))]
 #[allow(unsafe_code, reason = "the attribute calls the version that the processor has just been asked for")]
 fn sums_of_part<const N: usize>(
@@ -192,7 +193,7 @@ fn sums_of_part<const N: usize>(
     }
 }
 
-/// sum ← sum − B x for the coefficients of one neighbour, from number `FIRST` on.
+/// Computes sum ← sum − B x for the coefficients of one neighbour, from index `FIRST` on.
 #[inline(always)]
 fn gather<const N: usize, const FIRST: usize>(matrix: &BlockMatrix, e: usize, x: &[f32], sum: &mut [Lanes]) {
     let block = widen_block::<N>(matrix.off_diagonal::<N>(e));
@@ -201,7 +202,8 @@ fn gather<const N: usize, const FIRST: usize>(matrix: &BlockMatrix, e: usize, x:
     }
 }
 
-/// A half-sweep over one part; right-hand side, solution before, inverse diagonals and number of harmonics are known.
+/// Half-sweep over one part, from the right-hand side, the previous solution and the inverse diagonals of all
+/// harmonics.
 #[multiversion(targets("x86_64+avx2"))]
 #[allow(unsafe_code, reason = "the attribute calls the version that the processor has just been asked for")]
 fn relax_part<const N: usize, const COUNT: usize, const FIRST: usize>(
@@ -218,7 +220,8 @@ fn relax_part<const N: usize, const COUNT: usize, const FIRST: usize>(
     }
 }
 
-/// x_i = (A_ii + ∂/∂t)⁻¹ (b_i − Σ_j A_ij x_j), for `COUNT` coefficients or, with [`MOST`], any number up to that.
+/// Computes x_i = (A_ii + ∂/∂t)⁻¹ (b_i − Σ_j A_ij x_j) for `COUNT` coefficients, or for any number if `COUNT` is
+/// [`MOST`].
 #[inline(always)]
 fn relax_row<const N: usize, const COUNT: usize, const FIRST: usize>(
     matrix: &BlockMatrix,
@@ -270,7 +273,7 @@ fn relax_row<const N: usize, const COUNT: usize, const FIRST: usize>(
     }
 }
 
-/// Real part and negative imaginary part of (A + iβ)⁻¹, by columns; a singular matrix gives zero.
+/// Real part and negative imaginary part of (A + iβ)⁻¹, stored by columns; zero for a singular matrix.
 fn invert_shifted(n: usize, a: &[f32], beta: f32, out: &mut [f32]) {
     let size = n * n;
     let mut square = [0.0f64; 36];
@@ -297,10 +300,10 @@ mod tests {
     use super::*;
     use crate::math::fourier::Instances;
 
-    /// Off-diagonal entries that are kept as they are: 127 and -16 of a unit.
+    /// Off-diagonal entries that are stored without rounding error: 127 and -16 units.
     const OFF: [f64; 2] = [-127.0 / 128.0, 16.0 / 128.0];
 
-    /// Rows of a chain that lean on both neighbours.
+    /// Rows of a chain that couple to both neighbours.
     fn chain(n: usize) -> BlockMatrix {
         let mut first = vec![0u32];
         let mut index = Vec::new();
@@ -338,7 +341,7 @@ mod tests {
             "{:?}",
             harmonic_sweeps.r.iter().fold(0.0f32, |a, b| a.max(b.abs()))
         );
-        // the same in values: A x_n + ω Σ D_nj x_j = b_n
+        // the same system in values at the instances: A x_n + ω Σ D_nj x_j = b_n
         let instances = Instances::of_harmonics(harmonics);
         let count = instances.count();
         let value = |v: &[f32], i: usize, d: usize, n: usize| -> f64 {

@@ -1,16 +1,17 @@
-//! Conjugate gradients with a preconditioner that need not be linear: each direction is made conjugate to the one before it by
-//! what it is, not by what exact arithmetic would make of it (Notay, *Flexible conjugate gradients*, SIAM J. Sci. Comput. 22, 2000).
+//! Flexible conjugate gradients: the preconditioner may be nonlinear. Each direction is made conjugate to the previous
+//! one by explicit inner products, not by the formula that holds in exact arithmetic (Notay, *Flexible conjugate
+//! gradients*, SIAM J. Sci. Comput. 22, 2000).
 use super::parallel::sweep_slots;
 use super::reduce::sum;
 use super::types::Vector;
 
-/// What a row of a vector holds.
+/// The value of one row of a vector.
 pub trait Row: Copy + Send + Sync {
-    /// Nothing.
+    /// The zero value.
     const ZERO: Self;
-    /// The inner product.
+    /// Inner product with `other`.
     fn dot(&self, other: &Self) -> f64;
-    /// self + s · other.
+    /// The sum self + s · other.
     fn plus(&self, s: f64, other: &Self) -> Self;
 }
 
@@ -28,9 +29,9 @@ impl<const D: usize> Row for Vector<D> {
     }
 }
 
-/// A symmetric positive system by what it does to vectors.
+/// A symmetric positive definite linear system, given by its products with vectors.
 pub struct Symmetric<E, A, P> {
-    /// True when this is little enough to be left of the right-hand side.
+    /// `enough(r)` is true if the residual r is small enough.
     pub enough: E,
     /// `product(v, out)`: out = A v.
     pub product: A,
@@ -38,7 +39,8 @@ pub struct Symmetric<E, A, P> {
     pub precondition: P,
 }
 
-/// Adds to `y` what solves A δy = r, after `most` iterations at most; `r` becomes what is left. The iterations that it took.
+/// Adds to `y` the solution of A δy = r after at most `most` iterations and returns the number of iterations; `r`
+/// becomes the residual.
 pub fn conjugate_gradients<R: Row>(
     y: &mut [R],
     r: &mut [R],
@@ -58,7 +60,7 @@ pub fn conjugate_gradients<R: Row>(
         sweep_slots(&mut p, |i, p| *p = z[i].plus(-turn, p));
         product(&p, &mut q);
         curvature = sum(n, |i| p[i].dot(&q[i]));
-        // where nothing is left to be found, or a number is none
+        // the residual is zero, or a value is NaN
         if curvature.is_nan() || curvature <= 0.0 {
             return iteration;
         }

@@ -1,10 +1,11 @@
-//! Full matrices: A x = b by elimination with partial pivoting (Golub and Van Loan, 4th edition, section 3.4).
+//! Dense matrices: A x = b by elimination with partial pivoting (Golub and Van Loan, 4th edition, section 3.4).
 
-/// Ratio of smallest to largest pivot below which a matrix counts as singular: round-off of some thousand rows.
+/// Ratio of smallest to largest pivot below which a matrix is regarded as singular: round-off for some thousand rows.
 const SINGULAR: f64 = 1e-15;
 
-/// Solves A x = b for several right-hand sides at once; `matrix` holds the rows of A one after another and is used up, row i
-/// of `right` holds the right-hand sides of equation i and becomes the solution. False when A is singular to round-off.
+/// Solves A x = b for several right-hand sides. `matrix` holds the rows of A one after another and is overwritten; row
+/// i of `right` holds the right-hand sides of equation i and becomes the solution. Returns false if A is singular to
+/// round-off.
 pub fn solve<const M: usize>(matrix: &mut [f64], right: &mut [[f64; M]]) -> bool {
     let n = right.len();
     let (mut smallest, mut largest) = (f64::INFINITY, 0.0f64);
@@ -28,7 +29,7 @@ pub fn solve<const M: usize>(matrix: &mut [f64], right: &mut [[f64; M]]) -> bool
     true
 }
 
-/// Takes the multiples of row `k` that clear its column off the rows below.
+/// Subtracts multiples of row `k` from the rows below, so that their entries in column `k` vanish.
 fn eliminate<const M: usize>(matrix: &mut [f64], right: &mut [[f64; M]], k: usize) {
     let n = right.len();
     let (above, below) = matrix.split_at_mut((k + 1) * n);
@@ -46,17 +47,17 @@ fn less<const M: usize>(a: [f64; M], factor: f64, b: &[f64; M]) -> [f64; M] {
     std::array::from_fn(|m| a[m] - factor * b[m])
 }
 
-/// A matrix that has been factored once, to be solved with many times.
+/// A factored dense matrix, for solves with many right-hand sides.
 #[derive(Clone, Debug, Default)]
 pub struct Factors {
     n: usize,
-    /// L below the diagonal, U on it and above, rows in the order of `order`.
+    /// L below the diagonal, U on and above it; rows in the order of `order`.
     rows: Vec<f64>,
     order: Vec<usize>,
 }
 
 impl Factors {
-    /// Factors the matrix whose rows stand one after another; `None` when it is singular to round-off.
+    /// Factors the matrix with `n` rows, stored one after another; `None` if it is singular to round-off.
     pub fn new(n: usize, mut rows: Vec<f64>) -> Option<Self> {
         let mut order: Vec<usize> = (0..n).collect();
         let (mut smallest, mut largest) = (f64::INFINITY, 0.0f64);
@@ -87,12 +88,12 @@ impl Factors {
         self.n
     }
 
-    /// True when there are none.
+    /// True if there are no equations.
     pub fn is_empty(&self) -> bool {
         self.n == 0
     }
 
-    /// x = A⁻¹ b.
+    /// Computes x = A⁻¹ b.
     pub fn solve(&self, b: &[f64], x: &mut [f64]) {
         let n = self.n;
         for i in 0..n {
@@ -114,7 +115,7 @@ mod tests {
     #[test]
     fn solutions_satisfy_their_equations() {
         let n = 40;
-        // zeros on the diagonal ask for pivots
+        // zeros on the diagonal require pivoting
         let entry = |i: usize, j: usize| if i == j { 0.0 } else { ((7 * i + 3 * j * j) as f64).sin() };
         let exact: Vec<[f64; 2]> = (0..n).map(|i| [(i as f64).cos(), 1.0 + i as f64]).collect();
         let mut matrix: Vec<f64> = (0..n * n).map(|k| entry(k / n, k % n)).collect();

@@ -1,17 +1,17 @@
-//! Numbers in the words of messages, tables and pages: as many digits as tell something, and no zero with a sign.
+//! Numbers as text in messages, tables and pages: with the significant digits only, and without negative zero.
 
-/// A number with so many decimals; what rounds to zero has no sign.
+/// `value` with a fixed number of `decimals`; a value that rounds to zero has no sign.
 pub fn fixed(value: f64, decimals: usize) -> String {
     let text = format!("{value:.decimals$}");
     let zero = text.strip_prefix('-').filter(|rest| rest.bytes().all(|b| b"0.".contains(&b)));
     zero.map_or_else(|| text.clone(), str::to_owned)
 }
 
-/// A number of six significant digits, without zeros at its end: enough to recognise it.
+/// `value` with six significant digits, without trailing zeros.
 pub fn short(value: f64) -> String {
     let exponent = value.abs().log10().floor();
     if value == 0.0 || (-4.0..9.0).contains(&exponent) {
-        // what is added takes the sign from a zero
+        // the addition removes the sign of a zero
         let rounded = format!("{value:.5e}").parse().unwrap_or(value) + 0.0;
         return format!("{rounded}");
     }

@@ -1,21 +1,21 @@
-//! Numbers that carry one derivative.
+//! Dual numbers: a value with one derivative.
 //!
-//! x + x′ε with ε² = 0: what a tangent or the change of a residual needs and no more, so that it costs about twice the formula.
-//! [`Jet`](super::jet::Jet) carries the second derivative too.
+//! x + x′ε with ε² = 0. This suffices for a tangent or the change of a residual, at about twice the cost of the
+//! formula. [`Jet`](super::jet::Jet) carries the second derivative as well.
 use super::jet::Scalar;
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
 /// A value with its derivative in one direction.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Dual {
-    /// Value.
+    /// Value x.
     pub value: f64,
-    /// Derivative.
+    /// Derivative x′.
     pub derivative: f64,
 }
 
 impl Dual {
-    /// The independent variable at `x`.
+    /// The independent variable with the value `x`.
     #[inline(always)]
     pub const fn variable(x: f64) -> Self {
         Self { value: x, derivative: 1.0 }
@@ -33,14 +33,14 @@ impl Scalar for Dual {
         self.value
     }
 
-    /// Chain rule (f∘x)′ = f′x′; what does not move has no derivative, even where that of `f` is infinite.
+    /// Chain rule (f∘x)′ = f′x′; a constant keeps a zero derivative even where that of `f` is infinite.
     #[inline(always)]
     fn map(self, f: impl FnOnce(f64) -> [f64; 3]) -> Self {
         let [value, slope, _] = f(self.value);
         Self { value, derivative: if self.derivative == 0.0 { 0.0 } else { slope * self.derivative } }
     }
 
-    /// With no second power where the first one says it.
+    /// Power without the second derivative, which costs another power.
     #[inline(always)]
     fn powf(self, n: f64) -> Self {
         let value = self.value.powf(n);

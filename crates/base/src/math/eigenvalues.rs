@@ -1,22 +1,23 @@
-//! Eigenvalues of small matrices without symmetry.
+//! Eigenvalues of small unsymmetric matrices.
 //!
-//! Elimination brings the matrix to Hessenberg form H; then H − s = Q R, H ← R Q + s with Wilkinson's shift s makes the last entry
-//! below the diagonal vanish, and the matrix falls apart eigenvalue by eigenvalue (Golub and Van Loan, 4th edition, sections 7.4
-//! and 7.5; Wilkinson 1965). In complex numbers, where one shift at a time is enough.
+//! Elimination reduces the matrix to Hessenberg form H. Then the shifted QR iteration H − s = Q R, H ← R Q + s with
+//! Wilkinson's shift s makes the last subdiagonal entry vanish, which separates one eigenvalue after another (Golub and
+//! Van Loan, 4th edition, sections 7.4 and 7.5; Wilkinson 1965). The arithmetic is complex, so that one shift at a time
+//! suffices.
 use num_complex::Complex64;
 
-/// Steps for one eigenvalue after which there is none: two or three are usual.
+/// Maximum number of iterations for one eigenvalue; two or three are usual.
 const STEPS: usize = 60;
-/// Steps after which a shift that leads nowhere is replaced by another.
+/// Number of iterations after which an unsuccessful shift is replaced by another one.
 const STUCK: usize = 10;
 
-/// Square matrix, rows one after another.
+/// Square matrix, stored row by row.
 struct Matrix {
     n: usize,
     a: Vec<Complex64>,
 }
 
-/// The n eigenvalues, in no order, of the matrix whose rows stand one after another; `None` when it is not finite.
+/// The n eigenvalues, in no particular order, of the `n` × `n` matrix stored row by row; `None` if it is not finite.
 pub fn eigenvalues(matrix: &[f64], n: usize) -> Option<Vec<Complex64>> {
     if !matrix.iter().all(|x| x.is_finite()) {
         return None;
@@ -50,7 +51,7 @@ impl Matrix {
         &mut self.a[i * self.n + j]
     }
 
-    /// Clears what is below the first diagonal under the main one, by similarity.
+    /// Reduces the matrix to Hessenberg form by similarity transformations.
     fn reduce_to_hessenberg(&mut self) {
         let n = self.n;
         for k in 1..n.saturating_sub(1) {
@@ -75,7 +76,7 @@ impl Matrix {
         }
     }
 
-    /// First row of the block that ends in row `last` and does not fall apart; the entry before it is made zero.
+    /// First row of the unreduced block that ends in row `last`; sets the subdiagonal entry before it to zero.
     fn start_of_block(&mut self, last: usize) -> usize {
         for k in (1..=last).rev() {
             let size = self.at(k, k).norm() + self.at(k - 1, k - 1).norm();
@@ -87,7 +88,7 @@ impl Matrix {
         0
     }
 
-    /// The eigenvalue of the last two rows and columns before `end` that is nearer to the last entry.
+    /// Eigenvalue of the last 2 × 2 block before `end` that is nearer to its last entry.
     fn shift(&self, end: usize) -> Complex64 {
         let [a, d] = [end - 2, end - 1].map(|k| self.at(k, k));
         let (half, product) = (0.5 * (a - d), self.at(end - 2, end - 1) * self.at(end - 1, end - 2));
@@ -96,7 +97,7 @@ impl Matrix {
         if larger.norm() > 0.0 { d - product / larger } else { d }
     }
 
-    /// H − s = Q R, H ← R Q + s for the rows and columns `first..end`.
+    /// One QR step H − s = Q R, H ← R Q + s for the rows and columns `first..end`.
     fn step(&mut self, first: usize, end: usize, shift: Complex64) {
         (first..end).for_each(|k| *self.at_mut(k, k) -= shift);
         let mut turns = Vec::with_capacity(end - first);
@@ -171,7 +172,7 @@ mod tests {
 
     #[test]
     fn permutations_and_what_is_no_number() {
-        // the cyclic permutation, for which unshifted steps stand still: roots of one
+        // the cyclic permutation, for which unshifted iterations make no progress: the roots of one
         let found = eigenvalues(&[0.0, 0.0, 1.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0], 3).unwrap();
         assert!(found.iter().all(|z| (z.powu(3) - 1.0).norm() < 1e-13), "{found:?}");
         assert_eq!(eigenvalues(&[], 0), Some(Vec::new()));

@@ -1,56 +1,56 @@
-//! Sums of oscillations that grow or decay, fitted to samples at any times:
+//! Sums of growing or decaying oscillations, fitted to samples at arbitrary times.
 //!
-//! f(t) = c + Σ_m e^{σ_m t} (a_m cos ω_m t + b_m sin ω_m t), and a e^{σ t} alone where ω = 0.
+//! f(t) = c + Σ_m e^{σ_m t} (a_m cos ω_m t + b_m sin ω_m t), where a term with ω = 0 is a e^{σ t}.
 //!
-//! All of c, σ, ω, a and b are found together: Gauss-Newton steps on the sum of squares, held back as long as they do not lower it
-//! (Levenberg 1944, Marquardt 1963). They need a good start, which the poles of a [`super::pencil`] are. Times and values should
-//! be of order one: that is for the caller to arrange.
+//! All of c, σ, ω, a and b are fitted together by Gauss-Newton steps on the sum of squares, damped until they reduce it
+//! (Levenberg 1944, Marquardt 1963). The fit needs a good initial guess, such as the poles of a [`super::pencil`]. The
+//! caller should scale times and values to order one.
 use num_complex::Complex64;
 
 use super::dense::Factors;
 
-/// Steps after which the fit is as good as it gets.
+/// Maximum number of steps.
 const STEPS: usize = 80;
-/// How much the first step is held back, relative to the diagonal of the normal equations; and the most before giving up.
+/// Initial and maximum damping, relative to the diagonal of the normal equations.
 const HELD_BACK: f64 = 1e-6;
 const MOST_HELD_BACK: f64 = 1e8;
-/// Least: normal equations that are singular can still be solved.
+/// Minimum damping, with which singular normal equations can still be solved.
 const LEAST_HELD_BACK: f64 = 1e-13;
-/// Fall of the sum of squares in a step, relative to it, below which no more is to be gained.
+/// Relative decrease of the sum of squares in a step below which the fit is regarded as converged.
 const GAIN: f64 = 1e-12;
 
 /// One term of the sum.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Term {
-    /// σ.
+    /// Growth rate σ [1/time].
     pub growth: f64,
-    /// ω ≥ 0.
+    /// Angular frequency ω ≥ 0 [rad/time].
     pub frequency: f64,
-    /// a.
+    /// Amplitude a of the cosine.
     pub cosine: f64,
-    /// b; not used where ω = 0.
+    /// Amplitude b of the sine; unused if ω = 0.
     pub sine: f64,
 }
 
-/// c and the terms.
+/// A constant c plus a sum of terms.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Exponentials {
-    /// c.
+    /// Constant c.
     pub constant: f64,
-    /// Terms.
+    /// Terms of the sum.
     pub terms: Vec<Term>,
 }
 
 /// Samples of a signal.
 #[derive(Clone, Copy, Debug)]
 pub struct Samples<'a> {
-    /// Times.
+    /// Times of the samples.
     pub times: &'a [f64],
-    /// Values.
+    /// Values of the samples, one for each time.
     pub values: &'a [f64],
 }
 
-/// Which unknowns a step may change.
+/// Unknowns that a step may change.
 #[derive(Clone, Copy, PartialEq)]
 enum Free {
     Amplitudes,
@@ -65,28 +65,28 @@ struct Normal {
 }
 
 impl Term {
-    /// The term of the pole s = σ + iω, without amplitude.
+    /// The term with the pole s = σ + iω and zero amplitudes.
     pub fn of(pole: Complex64) -> Self {
         Self { growth: pole.re, frequency: pole.im, ..Self::default() }
     }
 
-    /// True where ω = 0.
+    /// True if ω = 0.
     pub fn is_drift(&self) -> bool {
         self.frequency == 0.0
     }
 
-    /// Its value.
+    /// Value of the term at the time `t`.
     pub fn at(&self, t: f64) -> f64 {
         let (sine, cosine) = (self.frequency * t).sin_cos();
         (self.growth * t).exp() * (self.cosine * cosine + self.sine * sine)
     }
 
-    /// Root mean square at some times.
+    /// Root mean square of the term at the given times.
     pub fn size(&self, times: &[f64]) -> f64 {
         (times.iter().map(|t| self.at(*t).powi(2)).sum::<f64>() / times.len() as f64).sqrt()
     }
 
-    /// Derivatives of its value by a and b, and by σ and ω where these are free.
+    /// Derivatives of the value with respect to a and b, and to σ and ω if these are free.
     fn derivatives(&self, t: f64, free: Free, row: &mut Vec<f64>) {
         let ((sine, cosine), e) = ((self.frequency * t).sin_cos(), (self.growth * t).exp());
         row.push(e * cosine);
@@ -101,7 +101,7 @@ impl Term {
         }
     }
 
-    /// Adds a step, in the order of [`Term::derivatives`].
+    /// Adds a step to the unknowns, in the order of [`Term::derivatives`].
     fn add(&mut self, free: Free, step: &mut impl Iterator<Item = f64>) {
         let drift = self.is_drift();
         let mut next = |wanted: bool| if wanted { step.next().unwrap_or(0.0) } else { 0.0 };
@@ -113,30 +113,31 @@ impl Term {
 }
 
 impl Exponentials {
-    /// The best fit to `samples` near the `poles` s = σ + iω, ω ≥ 0; `None` when there are fewer samples than unknowns.
+    /// The best fit to `samples` near the `poles` s = σ + iω with ω ≥ 0; `None` if there are fewer samples than
+    /// unknowns.
     pub fn fit(samples: Samples<'_>, poles: &[Complex64]) -> Option<Self> {
         let mut start = Self { constant: 0.0, terms: poles.iter().map(|s| Term::of(*s)).collect() };
         if samples.times.len() < start.unknowns() {
             return None;
         }
-        // amplitudes alone are a linear problem: two steps are one and its correction
+        // amplitudes alone are a linear problem: one step and one correction
         for _ in 0..2 {
             start = start.step(samples, Free::Amplitudes, LEAST_HELD_BACK)?;
         }
         Some(start.polished(samples))
     }
 
-    /// Number of c, σ, ω, a and b.
+    /// Number of unknowns c, σ, ω, a and b.
     pub fn unknowns(&self) -> usize {
         1 + self.terms.iter().map(|term| if term.is_drift() { 2 } else { 4 }).sum::<usize>()
     }
 
-    /// Its value.
+    /// Value of the sum at the time `t`.
     pub fn at(&self, t: f64) -> f64 {
         self.constant + self.terms.iter().map(|term| term.at(t)).sum::<f64>()
     }
 
-    /// Sum of squares of the misfit.
+    /// Sum of the squared differences from the samples.
     pub fn misfit(&self, samples: Samples<'_>) -> f64 {
         samples.times.iter().zip(samples.values).map(|(t, y)| (y - self.at(*t)).powi(2)).sum()
     }
@@ -164,7 +165,7 @@ impl Exponentials {
         best
     }
 
-    /// The next guess; `None` where the normal equations have no solution.
+    /// Fit after one step with the damping `held`; `None` if the normal equations have no solution.
     fn step(&self, samples: Samples<'_>, free: Free, held: f64) -> Option<Self> {
         let step = self.normal(samples, free).solve(held)?;
         let (mut next, mut step) = (self.clone(), step.into_iter());
@@ -198,7 +199,7 @@ impl Normal {
         }
     }
 
-    /// The step, with the diagonal enlarged by the part `held`; unknowns are scaled so that the diagonal is one.
+    /// Solves for the step, with the diagonal enlarged by the fraction `held`; unknowns are scaled to a unit diagonal.
     fn solve(self, held: f64) -> Option<Vec<f64>> {
         let n = self.n;
         let size = |i: usize| self.matrix[i * n + i].sqrt();

@@ -1,11 +1,12 @@
-//! Fourier series at equally spaced instances of one period, and the time derivative they make: ∂/∂t is the matrix ω D.
+//! Fourier series at equally spaced instances of one period, and their time derivative: ∂/∂t is the matrix ω D.
 //!
-//! A periodic function with N harmonics is fixed by N_T = 2N + 1 values at t_n = n T/N_T. Coefficients stand in the order
-//! of eq. (24): mean, cosines 1..N, sines 1..N. E⁻¹ takes them to values (27), E takes values to them (28), and with the
-//! derivative A of the coefficients D = E⁻¹ A E is the derivative of the values (29); ω belongs in front, as in (23). D has
-//! the closed form D_nj = (−1)^(n−j) / (2 sin(π(n−j)/N_T)), D_nn = 0 (Hall, Thomas and Clark, AIAA J. 40, 2002; Gopinath and
-//! Jameson, AIAA 2005-1220): circulant, antisymmetric, with the eigenvalues im, |m| ≤ N. Signs of (25) are lost in print;
-//! here d/dt cos mωt = −mω sin mωt. An even number of instances is refused: D then takes the saw-tooth for a constant.
+//! A periodic function with N harmonics is determined by its N_T = 2N + 1 values at t_n = n T/N_T. Coefficients have
+//! the order of eq. (24): mean, cosines 1..N, sines 1..N. E⁻¹ maps coefficients to values (27), E maps values to
+//! coefficients (28). With the derivative A of the coefficients, D = E⁻¹ A E is the derivative of the values (29), with
+//! ω as a factor as in (23). D has the closed form D_nj = (−1)^(n−j) / (2 sin(π(n−j)/N_T)), D_nn = 0 (Hall, Thomas and
+//! Clark, AIAA J. 40, 2002; Gopinath and Jameson, AIAA 2005-1220); it is circulant and antisymmetric, with the
+//! eigenvalues im, |m| ≤ N. Signs are missing in the printed eq. (25); here d/dt cos mωt = −mω sin mωt. An even number
+//! of instances is not allowed, because D would then map the sawtooth of alternating signs to zero.
 use std::f64::consts::PI;
 
 /// Equally spaced instances of a period.
@@ -14,11 +15,13 @@ pub struct Instances {
     harmonics: usize,
 }
 
-/// An even number of instances, or none.
+/// Error for an even number of instances.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("{count} instances of a period hold no whole number of harmonics\nhint: use an odd number, 2 N + 1")]
+#[error(
+    "{count} instances of a period do not correspond to a whole number of harmonics\nhint: use an odd number, 2 N + 1"
+)]
 pub struct EvenCount {
-    /// The number given.
+    /// The number of instances given.
     pub count: usize,
 }
 
@@ -37,12 +40,12 @@ pub struct Matrix {
 }
 
 impl Instances {
-    /// `count` instances of a period.
+    /// `count` equally spaced instances of a period; an error if `count` is even or zero.
     pub fn new(count: usize) -> Result<Self, EvenCount> {
         if count % 2 == 1 { Ok(Self { harmonics: count / 2 }) } else { Err(EvenCount { count }) }
     }
 
-    /// The instances that `harmonics` harmonics need.
+    /// The 2N + 1 instances for N = `harmonics`.
     pub fn of_harmonics(harmonics: usize) -> Self {
         Self { harmonics }
     }
@@ -57,24 +60,24 @@ impl Instances {
         self.harmonics
     }
 
-    /// The times t_n = n T/N_T, n = 0..2N, at which the vectors of eq. (26) stand.
+    /// The times t_n = n T/N_T, n = 0..2N, of the values in eq. (26).
     #[doc(alias = "eq26")]
     pub fn times(&self, omega: f64) -> Vec<f64> {
         (0..self.count()).map(|n| self.phase(n) / omega).collect()
     }
 
-    /// ωt_n.
+    /// Phase ωt_n (rad).
     fn phase(&self, n: usize) -> f64 {
         2.0 * PI * n as f64 / self.count() as f64
     }
 
-    /// cos mωt_n and sin mωt_n, with the product reduced to one period first.
+    /// cos mωt_n and sin mωt_n; the phase is reduced to one period first.
     fn wave(&self, m: usize, n: usize) -> (f64, f64) {
         let (sine, cosine) = self.phase(m * n % self.count()).sin_cos();
         (cosine, sine)
     }
 
-    /// E⁻¹, from coefficients to values, eq. (30).
+    /// E⁻¹, the matrix from coefficients to values, eq. (30).
     #[doc(alias = "eq30")]
     pub fn to_values(&self) -> Matrix {
         let h = self.harmonics;
@@ -85,7 +88,7 @@ impl Instances {
         })
     }
 
-    /// E, from values to coefficients, eq. (31): (2/N_T) (E⁻¹)ᵀ with the first row halved.
+    /// E, the matrix from values to coefficients, eq. (31): (2/N_T) (E⁻¹)ᵀ with the first row halved.
     #[doc(alias = "eq31")]
     pub fn to_coefficients(&self) -> Matrix {
         let h = self.harmonics;
@@ -97,7 +100,7 @@ impl Instances {
         })
     }
 
-    /// A, the derivative of coefficients by ωt, eq. (25): c_m' = m s_m, s_m' = −m c_m.
+    /// A, the derivative of coefficients with respect to ωt, eq. (25): c_m' = m s_m, s_m' = −m c_m.
     #[doc(alias = "eq25")]
     pub fn coefficient_derivative(&self) -> Matrix {
         let h = self.harmonics;
@@ -115,16 +118,16 @@ impl Instances {
         Matrix::from_fn(n, n, |i, j| omega * self.circulant((i + n - j) % n))
     }
 
-    /// Entry of D on the diagonal `d` = n − j, from 0 to 2N: the matrix is circulant.
+    /// Entry of D on the diagonal `d` = n − j, from 0 to 2N; the matrix is circulant.
     pub fn circulant(&self, d: usize) -> f64 {
-        // the shorter way around the circle, so that opposite entries are opposite to the last bit
+        // the shorter distance around the circle, so that opposite entries are exactly opposite
         let (steps, sign) = if d <= self.harmonics { (d, 0.5) } else { (self.count() - d, -0.5) };
         let alternating = if steps % 2 == 0 { sign } else { -sign };
         if d == 0 { 0.0 } else { alternating / (PI * steps as f64 / self.count() as f64).sin() }
     }
 
-    /// The matrix that takes values at these instances to values at those of `target`: exact interpolation to more
-    /// instances; to fewer, what the target can hold of the series, without the rest folded into it.
+    /// Matrix that interpolates values at these instances to those of `target`: exact for more instances; for fewer,
+    /// the series is truncated without aliasing.
     pub fn resample(&self, target: &Self) -> Matrix {
         if self == target {
             return Matrix::from_fn(self.count(), self.count(), |n, j| if n == j { 1.0 } else { 0.0 });
@@ -137,31 +140,31 @@ impl Instances {
         })
     }
 
-    /// Weights of the values in the derivative by ωt of the interpolant, at the phase ωt; at an instance they are those of
-    /// [`Self::derivative`], which costs less.
+    /// Weights of the values in the derivative of the interpolant with respect to ωt, at the phase ωt (rad). At an
+    /// instance they equal those of [`Self::derivative`], which costs less.
     pub fn derivative_weights(&self, phase: f64) -> Vec<f64> {
         let slope = |x: f64| -2.0 * (1..=self.harmonics).map(|m| m as f64 * (m as f64 * x).sin()).sum::<f64>();
         (0..self.count()).map(|j| slope(phase - self.phase(j)) / self.count() as f64).collect()
     }
 
-    /// Weights of the values in the interpolant at the phase ωt.
+    /// Weights of the values in the interpolant at the phase ωt (rad).
     pub fn weights(&self, phase: f64) -> Vec<f64> {
         (0..self.count()).map(|j| kernel(self.harmonics, phase - self.phase(j)) / self.count() as f64).collect()
     }
 }
 
-/// 1 + 2 Σ cos mx for m = 1..n.
+/// The sum 1 + 2 Σ cos mx for m = 1..n.
 fn kernel(n: usize, x: f64) -> f64 {
     1.0 + 2.0 * (1..=n).map(|m| (m as f64 * x).cos()).sum::<f64>()
 }
 
 impl Series {
-    /// A series from its coefficients: mean, cosines, sines.
+    /// A series from its coefficients: mean, cosines, sines; an error if their number is even.
     pub fn new(coefficients: Vec<f64>) -> Result<Self, EvenCount> {
         Instances::new(coefficients.len()).map(|_| Self { coefficients })
     }
 
-    /// The series through values at instances, eq. (28).
+    /// The series through the given values at the instances, eq. (28).
     #[doc(alias = "eq28")]
     pub fn of_values(values: &[f64]) -> Result<Self, EvenCount> {
         let instances = Instances::new(values.len())?;
@@ -174,7 +177,7 @@ impl Series {
         self.instances().to_values().apply(&self.coefficients)
     }
 
-    /// Value at the phase ωt, eq. (19).
+    /// Value at the phase ωt (rad), eq. (19).
     #[doc(alias = "eq19")]
     pub fn at(&self, phase: f64) -> f64 {
         let h = self.instances().harmonics;
@@ -185,12 +188,12 @@ impl Series {
         self.coefficients[0] + waves.sum::<f64>()
     }
 
-    /// Mean, cosines 1..N, sines 1..N.
+    /// Coefficients: mean, cosines 1..N, sines 1..N.
     pub fn coefficients(&self) -> &[f64] {
         &self.coefficients
     }
 
-    /// The instances that hold the series.
+    /// The instances that determine the series.
     pub fn instances(&self) -> Instances {
         Instances { harmonics: self.coefficients.len() / 2 }
     }
@@ -202,7 +205,7 @@ impl Matrix {
         Self { columns, entries }
     }
 
-    /// Row `i`.
+    /// Values of row `i`.
     pub fn row(&self, i: usize) -> &[f64] {
         &self.entries[i * self.columns..(i + 1) * self.columns]
     }
@@ -217,7 +220,7 @@ impl Matrix {
         self.columns
     }
 
-    /// The matrix times a vector.
+    /// Product of the matrix with a vector.
     pub fn apply(&self, x: &[f64]) -> Vec<f64> {
         let dot = |row: &[f64]| row.iter().zip(x).map(|(a, b)| a * b).sum();
         self.entries.chunks_exact(self.columns).map(dot).collect()
@@ -240,7 +243,7 @@ mod tests {
         assert!(worst <= tolerance, "{worst:e}");
     }
 
-    /// A series with all harmonics, none of them special.
+    /// A series with all harmonics non-zero.
     fn series(harmonics: usize) -> Series {
         Series::new((0..2 * harmonics + 1).map(|k| ((k * k) as f64 * 0.7 + 1.0).sin()).collect()).unwrap()
     }

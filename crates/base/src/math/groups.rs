@@ -1,21 +1,23 @@
-//! Groups of a few rows that see one another.
+//! Groups of a few coupled rows, for coarse levels.
 const FREE: u32 = u32::MAX;
 
-/// Rows gathered into groups.
+/// A division of rows into groups.
 #[derive(Default)]
 pub struct Groups {
-    /// The group of each row.
+    /// Group of each row.
     of: Vec<u32>,
-    /// Rows of each group one after another in ascending order, and where those of a group begin.
+    /// Rows of each group, one group after another, each in ascending order; and the start of each group.
     member: Vec<u32>,
     first: Vec<u32>,
 }
 
 impl Groups {
-    /// Groups of `n` rows, nearest in storage order first; `others(i, list)` adds the rows that row `i` sees to a list.
+    /// Groups `n` rows, nearest in storage order first; `others(i, list)` appends the rows coupled to row `i` to a
+    /// list.
     ///
-    /// A group has at most `size` rows but for lone ones that join it. Neighbours of neighbours may join where too few neighbours
-    /// are left: small groups see so many others that coarse rows in space would take a third of all memory.
+    /// A group has at most `size` rows, apart from single rows that join it. If too few neighbours are free, neighbours
+    /// of neighbours join. Smaller groups would couple to so many others that the coarse rows in 3-D would take a third
+    /// of all memory.
     pub fn new(n: usize, size: usize, others: impl Fn(usize, &mut Vec<u32>)) -> Self {
         let mut of = vec![FREE; n];
         let mut count = 0;
@@ -31,7 +33,7 @@ impl Groups {
             near.clear();
             near.extend(seen.iter().filter(|j| of[**j as usize] == FREE && **j as usize != i));
             if near.is_empty() && size > 1 {
-                // a lone row joins the group of its nearest neighbour
+                // a single row joins the group of its nearest neighbour
                 if let Some(j) = seen.iter().find(|j| **j as usize != i) {
                     of[i] = of[*j as usize];
                     continue;
@@ -60,12 +62,12 @@ impl Groups {
         self.first.len().saturating_sub(1)
     }
 
-    /// True without any.
+    /// True if there are no groups.
     pub fn is_empty(&self) -> bool {
         self.len() == 0
     }
 
-    /// The group of each row.
+    /// Group of each row.
     pub fn of(&self) -> &[u32] {
         &self.of
     }
@@ -75,13 +77,13 @@ impl Groups {
         &self.member[self.first[g] as usize..self.first[g + 1] as usize]
     }
 
-    /// Bytes held.
+    /// Memory in use (bytes).
     pub fn bytes(&self) -> usize {
         4 * (self.of.len() + self.member.len() + self.first.len())
     }
 }
 
-/// Rows of each of `n` groups one after another in ascending order, and where those of a group begin.
+/// Rows of each of `n` groups, one group after another, each in ascending order; and the start of each group.
 fn members(group: &[u32], n: usize) -> (Vec<u32>, Vec<u32>) {
     let mut first = vec![0; n + 1];
     group.iter().for_each(|g| first[*g as usize + 1] += 1);
@@ -98,7 +100,7 @@ fn members(group: &[u32], n: usize) -> (Vec<u32>, Vec<u32>) {
 mod tests {
     use super::*;
 
-    /// A row of rows that see the ones beside them.
+    /// Rows on a line, each coupled to the two beside it.
     fn line(n: usize) -> impl Fn(usize, &mut Vec<u32>) {
         move |i, list| {
             list.extend((i > 0).then(|| i as u32 - 1));
@@ -117,7 +119,7 @@ mod tests {
 
     #[test]
     fn neighbours_of_neighbours_fill_groups() {
-        // a row sees two others: a third comes from beyond them
+        // a row couples to two others: a third member comes from their neighbours
         let groups = Groups::new(60, 3, line(60));
         assert_eq!(groups.len(), 20);
     }

@@ -1,16 +1,17 @@
 //! Position of a cell along the Hilbert curve, in any dimension (Skilling 2004, AIP Conf. Proc. 707).
 //!
-//! Particles that are neighbours in space become neighbours in memory; residuals run several times faster than on a random
-//! order.
+//! Particles that are neighbours in space become neighbours in memory; residuals are then computed several times faster
+//! than in random order.
 
-/// Index along the curve of the cell with integer coordinates `x`, each below 2^`bits`; `D`·`bits` may not exceed 64.
+/// Index along the curve of the cell with integer coordinates `x`, each below 2^`bits`; `D`·`bits` must not exceed 64.
 pub fn hilbert_index<const D: usize>(mut x: [u32; D], bits: u32) -> u64 {
     let top = 1u32 << (bits - 1);
     let mut q = top;
     while q > 1 {
         let p = q - 1;
         for d in 0..D {
-            // invert the first where the bit is set, exchange both where not: without a branch, as no guess would hold
+            // inverts the first coordinate if the bit is set, else exchanges both; without a branch, which could not be
+            // predicted
             let set = 0u32.wrapping_sub(u32::from(x[d] & q != 0));
             let t = (x[0] ^ x[d]) & p & !set;
             x[0] ^= t | p & set;
@@ -21,7 +22,7 @@ pub fn hilbert_index<const D: usize>(mut x: [u32; D], bits: u32) -> u64 {
     for d in 1..D {
         x[d] ^= x[d - 1];
     }
-    // bit b: whether the number of bits above b is odd
+    // bit b: true if the number of set bits above b is odd
     let mut t = x[D - 1] & (top | (top - 1));
     [1, 2, 4, 8, 16].into_iter().for_each(|s| t ^= t >> s);
     t >>= 1;
@@ -32,7 +33,7 @@ pub fn hilbert_index<const D: usize>(mut x: [u32; D], bits: u32) -> u64 {
     (0..bits).rev().fold(0, |index, b| (0..D).fold(index, |index, d| index << 1 | u64::from(x[d] >> b & 1)))
 }
 
-/// The bits of `x` with a zero after each.
+/// Inserts a zero after each bit of `x`.
 fn spread(x: u32) -> u64 {
     const STEPS: [(u32, u64); 5] = [
         (16, 0x0000_ffff_0000_ffff),

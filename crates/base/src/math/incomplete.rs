@@ -1,12 +1,13 @@
-//! Incomplete factorisation of a sparse block matrix that leaves its off-diagonal blocks as they are.
+//! Incomplete factorisation of a sparse block matrix in which off-diagonal blocks remain unchanged (DILU).
 //!
-//! A = L + diag A + U is replaced by (D + L) D⁻¹ (D + U), with the pivots D for which the diagonals agree (DILU; Pommerell 1992):
+//! A = L + diag A + U is approximated by (D + L) D⁻¹ (D + U), with pivots D for which the diagonals agree (Pommerell
+//! 1992):
 //!
 //! D_i = A_ii − Σ_{j<i} A_ij D_j⁻¹ A_ji.
 //!
-//! Along a line of particles, where nothing is left out, that is the exact solution: the stiff coupling across thin layers is
-//! followed at the price of two half-sweeps. Blocks between the parts of the matrix are left out of the factors, so that parts are
-//! independent of one another; a second solve for what the first one left takes them in.
+//! Along a line of particles this is the exact solution, so that the stiff coupling across thin layers is resolved at
+//! the cost of two half-sweeps. Blocks between parts of the matrix are not included in the factors, so that parts are
+//! independent. A second solve for the residual takes these blocks into account.
 use std::ops::Range;
 
 use multiversion::multiversion;
@@ -16,7 +17,7 @@ use super::blocks::{array, invert, store, with_block};
 use super::parallel::{sweep, sweep_parts};
 use super::rounded::{LANES, Lanes, leading, load, multiply, subtract, widen_block};
 
-/// Inverse pivots of a matrix, and the storage of a solution.
+/// Inverse pivots of a matrix, and working storage of a solve.
 #[derive(Clone, Debug, Default)]
 pub struct Incomplete {
     inverse: Vec<f32>,
@@ -25,12 +26,12 @@ pub struct Incomplete {
 }
 
 impl Incomplete {
-    /// Bytes held.
+    /// Memory in use (bytes).
     pub fn bytes(&self) -> usize {
         4 * (self.inverse.len() + self.first.len() + self.second.len())
     }
 
-    /// Forms the pivots of `matrix`.
+    /// Computes the pivots of `matrix`.
     pub fn factor(&mut self, matrix: &BlockMatrix) {
         let n = matrix.block();
         self.inverse.resize(matrix.n_rows() * n * n, 0.0);
@@ -53,8 +54,8 @@ impl Incomplete {
         });
     }
 
-    /// z ≈ A⁻¹ r, where `r(i, row)` sets row i of the right-hand side and `matrix` is the one that was factored: solved once with
-    /// the factors, and once more for what is left, blocks between parts included.
+    /// Computes z ≈ A⁻¹ r, where `r(i, row)` sets row i of the right-hand side and `matrix` is the factored matrix: one
+    /// solve with the factors, and a second one for the residual, which includes the blocks between parts.
     pub fn apply(&mut self, matrix: &BlockMatrix, r: impl Fn(usize, &mut [f32]) + Sync, z: &mut [f64]) {
         let scaled = |i: usize, row: &mut [f32]| {
             r(i, row);
@@ -73,7 +74,7 @@ impl Incomplete {
     }
 }
 
-/// x ← (D + U)⁻¹ D (D + L)⁻¹ b on the rows of one part.
+/// Computes x ← (D + U)⁻¹ D (D + L)⁻¹ b for the rows of one part.
 #[multiversion(targets("x86_64+avx2"))]
 #[allow(unsafe_code, reason = "the attribute calls the version that the processor has just been asked for")]
 fn solve_part<const N: usize>(
@@ -96,7 +97,7 @@ fn solve_part<const N: usize>(
     backward::<N>(matrix, inverse, part, x);
 }
 
-/// The same for what the solution `solved` has left of the right-hand side.
+/// Solves in the same way for the residual of the solution `solved`.
 #[multiversion(targets("x86_64+avx2"))]
 #[allow(unsafe_code, reason = "the attribute calls the version that the processor has just been asked for")]
 fn correct_part<const N: usize>(
@@ -118,7 +119,7 @@ fn correct_part<const N: usize>(
         for e in below.chain(matrix.middle(i)..inside.end).chain(above) {
             subtract::<N>(matrix.off_diagonal::<N>(e), &load::<N>(solved, column(e)), &mut r);
         }
-        // what is left of the right-hand side and what the forward solve takes from it, at once
+        // subtracts both the product with the solution and that of the forward solve
         for e in inside.start..matrix.middle(i) {
             let j = column(e);
             let (x, y) = (load::<N>(solved, j), load::<N>(y, j - start));
@@ -129,7 +130,7 @@ fn correct_part<const N: usize>(
     backward::<N>(matrix, inverse, part, y);
 }
 
-/// x ← (D + U)⁻¹ D x on the rows of one part.
+/// Computes x ← (D + U)⁻¹ D x for the rows of one part.
 #[inline(always)]
 fn backward<const N: usize>(matrix: &BlockMatrix, inverse: &[f32], part: &Range<usize>, x: &mut [f32]) {
     for i in part.clone().rev() {
@@ -143,7 +144,7 @@ fn backward<const N: usize>(matrix: &BlockMatrix, inverse: &[f32], part: &Range<
     }
 }
 
-/// x_i = own + D_i⁻¹ r.
+/// Computes x_i = own + D_i⁻¹ r.
 #[inline(always)]
 fn add_pivoted<const N: usize>(inverse: &[f32], i: usize, r: &Lanes, own: [f32; N], x: &mut [f32]) {
     let mut y = own;
@@ -151,7 +152,8 @@ fn add_pivoted<const N: usize>(inverse: &[f32], i: usize, r: &Lanes, own: [f32; 
     store(&y, x);
 }
 
-/// A_ii − Σ_{j<i} A_ij D_j⁻¹ A_ji by columns; `before` holds the inverse pivots of the rows of the part from `start` to i.
+/// Pivot A_ii − Σ_{j<i} A_ij D_j⁻¹ A_ji, stored by columns; `before` holds the inverse pivots of the rows of the part
+/// from `start` to i.
 fn pivot<const N: usize>(matrix: &BlockMatrix, i: usize, start: usize, before: &[f32]) -> [[f64; N]; N] {
     let own = matrix.diagonal(i);
     let mut pivot: [[f64; N]; N] = array(|c| array(|r| f64::from(own[c * N + r])));

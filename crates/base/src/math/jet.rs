@@ -1,11 +1,13 @@
-//! Numbers that carry their derivatives.
+//! Numbers with derivatives (automatic differentiation in forward mode).
 //!
-//! A function written once over [`Scalar`] gives its value for `f64`, and value, first and second derivative for a [`Jet`]:
-//! x + x′ε + x″ε²/2 with ε³ = 0, so that derivatives are exact to rounding and belong to the same formula: velocity and
-//! acceleration of a motion. Where the first derivative is enough a [`Dual`](super::dual::Dual) number costs less.
+//! A function that is generic in [`Scalar`] gives its value for `f64`, and value, first and second derivative for a
+//! [`Jet`], x + x′ε + x″ε²/2 with ε³ = 0. The derivatives are exact up to rounding and follow from the same formula,
+//! e.g. velocity and acceleration of a motion. If the first derivative suffices, a [`Dual`](super::dual::Dual) number
+//! costs less.
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
-/// What a formula needs of its numbers. Choices are made by values: a maximum has the derivative of the greater one.
+/// Arithmetic of a real number or of one with derivatives. Selections compare values: a maximum has the derivative of
+/// the greater number.
 pub trait Scalar:
     Copy
     + Add<Output = Self>
@@ -17,14 +19,14 @@ pub trait Scalar:
     + Div<Output = Self>
     + Neg<Output = Self>
 {
-    /// A constant.
+    /// The constant `value`, with zero derivatives.
     fn constant(value: f64) -> Self;
-    /// The number itself.
+    /// The value without derivatives.
     fn value(self) -> f64;
-    /// f(self), where `f` gives value, first and second derivative at a number.
+    /// The composition f(self), where `f` returns value, first and second derivative for a real number.
     fn map(self, f: impl FnOnce(f64) -> [f64; 3]) -> Self;
 
-    /// Sine.
+    /// Sine of the number (an angle in radians).
     #[inline(always)]
     fn sin(self) -> Self {
         self.map(|x| {
@@ -33,7 +35,7 @@ pub trait Scalar:
         })
     }
 
-    /// Cosine.
+    /// Cosine of the number (an angle in radians).
     #[inline(always)]
     fn cos(self) -> Self {
         self.map(|x| {
@@ -42,13 +44,13 @@ pub trait Scalar:
         })
     }
 
-    /// 1/x.
+    /// Reciprocal 1/x of the number.
     #[inline(always)]
     fn inverse(self) -> Self {
         self.map(|x| [1.0 / x, -1.0 / (x * x), 2.0 / (x * x * x)])
     }
 
-    /// √x.
+    /// Square root √x.
     #[inline(always)]
     fn sqrt(self) -> Self {
         self.map(|x| {
@@ -57,25 +59,25 @@ pub trait Scalar:
         })
     }
 
-    /// xⁿ.
+    /// Power xⁿ of the number x.
     #[inline(always)]
     fn powf(self, n: f64) -> Self {
         self.map(|x| [x.powf(n), n * x.powf(n - 1.0), n * (n - 1.0) * x.powf(n - 2.0)])
     }
 
-    /// eˣ.
+    /// Exponential eˣ of the number x.
     #[inline(always)]
     fn exp(self) -> Self {
         self.map(|x| [x.exp(); 3])
     }
 
-    /// Natural logarithm.
+    /// Natural logarithm of the number.
     #[inline(always)]
     fn log(self) -> Self {
         self.map(|x| [x.ln(), 1.0 / x, -1.0 / (x * x)])
     }
 
-    /// |x|.
+    /// Absolute value |x|.
     #[inline(always)]
     fn abs(self) -> Self {
         self.map(|x| [x.abs(), x.signum(), 0.0])
@@ -112,7 +114,7 @@ impl Scalar for f64 {
 
     #[inline(always)]
     fn powf(self, n: f64) -> Self {
-        // the derivatives are no work that the compiler can see through
+        // the compiler cannot optimise the unused derivatives away
         Self::powf(self, n)
     }
 
@@ -130,16 +132,16 @@ impl Scalar for f64 {
 /// A value with its first and second derivative.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Jet {
-    /// Value.
+    /// Value x of the function.
     pub value: f64,
-    /// First derivative.
+    /// First derivative x′ of the function.
     pub first: f64,
-    /// Second derivative.
+    /// Second derivative x″ of the function.
     pub second: f64,
 }
 
 impl Jet {
-    /// The independent variable at `t`.
+    /// The independent variable with the value `t`.
     pub fn variable(t: f64) -> Self {
         Self { value: t, first: 1.0, second: 0.0 }
     }
@@ -157,7 +159,7 @@ impl Scalar for Jet {
     /// Chain rule: (f∘x)′ = f′x′, (f∘x)″ = f″x′² + f′x″.
     fn map(self, f: impl FnOnce(f64) -> [f64; 3]) -> Self {
         let [value, slope, bend] = f(self.value);
-        // what does not move has no derivative, even where that of `f` is infinite
+        // a constant keeps zero derivatives even where those of `f` are infinite
         if self.first == 0.0 && self.second == 0.0 {
             return Self::constant(value);
         }
@@ -200,7 +202,7 @@ impl Mul for Jet {
 impl Div for Jet {
     type Output = Self;
     fn div(self, o: Self) -> Self {
-        // the value itself is divided, so that it is the one of `f64`
+        // the value itself is divided, so that it equals that of `f64`
         Self { value: self.value / o.value, ..self * o.inverse() }
     }
 }

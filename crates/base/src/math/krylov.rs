@@ -1,26 +1,28 @@
 //! GMRES with right preconditioning (Saad and Schultz 1986), matrix-free.
 //!
-//! Basis vectors are kept in single precision, those of large systems to two or three digits; sums are made in double. The linear systems of
-//! an implicit step are solved to a few per cent, and the basis would be the largest array of a run. A basis that is rounded spans another
-//! space, nearly orthogonal, in which the solution is as good; the residual is known to what rounding leaves, a five-hundredth (Aliaga,
-//! Anzt, Grützmacher, Quintana-Ortí and Tomás, *Compressed basis GMRES on high-performance graphics processing units*, Int. J. High
-//! Perform. Comput. Appl. 37, 2023).
+//! Basis vectors are stored in single precision, those of large systems to two or three digits; sums use double
+//! precision. The basis would otherwise be the largest array of a run, and the linear systems of an implicit step are
+//! solved only to a few per cent. A rounded basis spans a slightly different, nearly orthogonal space, in which the
+//! solution is equally good; the residual is then known to about 1/500 (Aliaga, Anzt, Grützmacher, Quintana-Ortí and
+//! Tomás, *Compressed basis GMRES on high-performance graphics processing units*, Int. J. High Perform. Comput. Appl.
+//! 37, 2023).
 use std::ops::Range;
 
 use super::parallel::{fill, sweep, sweep_chunks};
 use super::reduce::{abreast, norm, sum_each};
 use super::rounded::{of_upper_half, upper_half};
 
-/// Unknowns beyond which basis vectors are kept to two or three digits.
+/// Number of unknowns above which basis vectors are stored to two or three digits.
 const LARGE: usize = 1 << 19;
-/// Part of a vector that must be left by a pass of Gram-Schmidt for the rest to be orthogonal enough.
+/// Minimum fraction of a vector that must remain after one pass of Gram-Schmidt, so that no second pass is needed for
+/// orthogonality.
 const ENOUGH_LEFT: f64 = 0.1;
 
-/// Storage of GMRES, reused between calls.
+/// Working storage of GMRES, reused between calls.
 pub struct Gmres {
     basis: Vec<Stored>,
     hessenberg: Vec<Vec<f64>>,
-    /// What is left of the right-hand side in the turned basis, and the rotations that turn it.
+    /// Right-hand side in the rotated basis, and the Givens rotations.
     g: Vec<f64>,
     rotations: Vec<(f64, f64)>,
     /// Products with the basis, or coefficients in it, and their sums over chunks.
@@ -28,16 +30,16 @@ pub struct Gmres {
     chunks: Vec<f64>,
 }
 
-/// When a solve ends.
+/// Convergence criteria of a solve.
 #[derive(Clone, Copy, Debug)]
 pub struct Goal {
-    /// Residual over right-hand side that is asked for.
+    /// Ratio of the residual to the right-hand side at convergence.
     pub tolerance: f64,
-    /// Greatest number of iterations.
+    /// Maximum number of iterations.
     pub most: usize,
 }
 
-/// A linear system by what it does to vectors.
+/// A linear system, given by its products with vectors.
 pub struct System<A, P> {
     /// `product(v, out)`: out = A v.
     pub product: A,
@@ -45,22 +47,22 @@ pub struct System<A, P> {
     pub precondition: P,
 }
 
-/// How a solve ended.
+/// Result of a solve.
 #[derive(Clone, Copy, Debug)]
 pub struct Solved {
-    /// Iterations used.
+    /// Number of iterations.
     pub iterations: usize,
-    /// Residual over right-hand side.
+    /// Ratio of the residual to the right-hand side.
     pub reduction: f64,
 }
 
 impl Gmres {
-    /// Storage for `n` unknowns and at most `size` basis vectors; those are made when they are needed for the first time.
+    /// Storage for `n` unknowns and at most `size` basis vectors, which are allocated at their first use.
     pub fn new(n: usize, size: usize) -> Self {
         Self::with(Stored::new(n, n > LARGE), size)
     }
 
-    /// The same where basis vectors are like `first`.
+    /// Storage whose basis vectors have the format of `first`.
     fn with(first: Stored, size: usize) -> Self {
         Self {
             basis: vec![first],
@@ -72,13 +74,12 @@ impl Gmres {
         }
     }
 
-    /// Bytes held.
+    /// Memory in use (bytes).
     pub fn bytes(&self) -> usize {
         self.basis.iter().map(Stored::bytes).sum()
     }
 
-    /// Solves A x = b from x = 0 until the residual has fallen to what `goal` asks, after as many iterations as it
-    /// allows, or when the basis is full; `b` is storage afterwards.
+    /// Solves A x = b from x = 0 until `goal` is reached or the basis is full; `b` is overwritten.
     pub fn solve(
         &mut self,
         b: &mut [f64],
@@ -89,7 +90,8 @@ impl Gmres {
         self.solve_unless((b, x), goal, &|| false, system)
     }
 
-    /// The same from `(b, x)`, which ends with what it has where `stop`, asked in every iteration, says so.
+    /// Solves A x = b for `(b, x)` as [`Gmres::solve`]; ends early with the present solution if `stop`, which is called
+    /// in every iteration, returns true.
     pub fn solve_unless(
         &mut self,
         (b, x): (&mut [f64], &mut [f64]),
@@ -125,9 +127,10 @@ impl Gmres {
         Solved { iterations: used, reduction: self.g[used].abs() / start }
     }
 
-    /// Gram-Schmidt of A z against the basis, once more where the first pass left little of it; the size of what is left.
+    /// Orthogonalises A z against the basis by Gram-Schmidt, twice if the first pass leaves little of it, and returns
+    /// the norm of the rest.
     ///
-    /// The classical form reads each chunk of the basis once for all products, the modified form once for each.
+    /// The classical form reads each chunk of the basis once for all products, the modified form once for each product.
     fn orthogonalise(&mut self, k: usize, w: &mut [f64]) -> f64 {
         let column = &mut self.hessenberg[k];
         column[..=k].fill(0.0);
@@ -148,7 +151,7 @@ impl Gmres {
         after
     }
 
-    /// Sets basis vector `k` to `w`, whose size this is.
+    /// Sets basis vector `k` to `w` divided by its norm `size`.
     fn lengthen(&mut self, k: usize, w: &[f64], size: f64) {
         let scale = if size > 0.0 { 1.0 / size } else { 0.0 };
         if self.basis.len() == k {
@@ -169,7 +172,7 @@ impl Gmres {
         (g[k], g[k + 1]) = (c * g[k], -s * g[k]);
     }
 
-    /// w = Σ y_k v_k with the triangular solve for y.
+    /// Computes w = Σ y_k v_k, where a triangular solve gives y.
     fn combine(&mut self, used: usize, w: &mut [f64]) {
         let y = &mut self.products[..used];
         y.copy_from_slice(&self.g[..used]);
@@ -184,7 +187,7 @@ impl Gmres {
     }
 }
 
-/// Sets `all` to the inner products of `w` with the vectors of the basis.
+/// Sets `all` to the inner products of `w` with the basis vectors.
 fn products(w: &[f64], basis: &[Stored], all: &mut [f64], chunks: &mut Vec<f64>) {
     sum_each(w.len(), all, chunks, |range, out| {
         for (out, v) in out.iter_mut().zip(basis) {
@@ -193,7 +196,7 @@ fn products(w: &[f64], basis: &[Stored], all: &mut [f64], chunks: &mut Vec<f64>)
     })
 }
 
-/// w ← w + Σ_j y_j v_j.
+/// Computes w ← w + Σ_j y_j v_j.
 fn combine(w: &mut [f64], basis: &[Stored], y: impl Fn(usize) -> f64 + Sync) {
     sweep_chunks(w, |range, out| {
         for (j, v) in basis.iter().enumerate() {
@@ -202,19 +205,19 @@ fn combine(w: &mut [f64], basis: &[Stored], y: impl Fn(usize) -> f64 + Sync) {
     });
 }
 
-/// Numbers as they are kept, read in single precision.
+/// A view of stored numbers.
 #[derive(Clone, Copy, Debug)]
 pub enum Numbers<'a> {
-    /// In single precision.
+    /// Values in single precision.
     Single(&'a [f32]),
-    /// The upper halves of numbers in single precision.
+    /// Upper halves of numbers in single precision.
     Halves(&'a [u16]),
-    /// In double precision.
+    /// Values in double precision.
     Double(&'a [f64]),
 }
 
 impl Numbers<'_> {
-    /// Those of a range.
+    /// View of a range of the numbers.
     pub fn of(&self, range: Range<usize>) -> Numbers<'_> {
         match self {
             Self::Single(v) => Numbers::Single(&v[range]),
@@ -223,7 +226,7 @@ impl Numbers<'_> {
         }
     }
 
-    /// Calls `f` with each slot of `row` and the number that goes with it, the first of them number `at`.
+    /// Calls `f` with each entry of `row` and the corresponding number; the first one has the index `at`.
     #[inline(always)]
     pub fn each<T>(&self, at: usize, row: &mut [T], f: impl Fn(&mut T, f32)) {
         match self {
@@ -234,11 +237,11 @@ impl Numbers<'_> {
     }
 }
 
-/// A basis vector.
+/// A stored basis vector.
 enum Stored {
-    /// In single precision.
+    /// Values in single precision.
     Single(Vec<f32>),
-    /// The upper halves of numbers in single precision.
+    /// Upper halves of numbers in single precision.
     Halves(Vec<u16>),
 }
 
@@ -279,7 +282,7 @@ impl Stored {
         }
     }
 
-    /// The inner product of a range with `w`.
+    /// Inner product of a range with `w`.
     fn dot(&self, range: &Range<usize>, w: &[f64]) -> f64 {
         match self {
             Self::Single(v) => {
@@ -293,7 +296,7 @@ impl Stored {
         }
     }
 
-    /// w ← w + y v over a range.
+    /// Computes w ← w + y v over a range.
     fn add_to(&self, range: &Range<usize>, y: f64, w: &mut [f64]) {
         match self {
             Self::Single(v) => w.iter_mut().zip(&v[range.clone()]).for_each(|(w, v)| *w += y * f64::from(*v)),
@@ -311,7 +314,7 @@ mod tests {
     #[test]
     fn residuals_are_what_is_told_whatever_the_size_of_the_unknowns() {
         const N: usize = 3000;
-        // convection and diffusion on a line, unknowns of very different size
+        // convection and diffusion on a line, with unknowns of very different magnitudes
         let size = |i: usize| if i.is_multiple_of(3) { 1e6 } else { 1.0 };
         let at = |v: &[f64], i: usize| v.get(i).map_or(0.0, |v| v / size(i));
         let product = |v: &[f64], out: &mut [f64]| {

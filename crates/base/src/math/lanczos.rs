@@ -1,27 +1,29 @@
-//! The largest eigenvalues of a symmetric operator by blocks of Krylov's vectors.
+//! Largest eigenvalues of a symmetric operator by the block Lanczos method.
 //!
-//! A block of vectors, its image, the image of that and so on are made orthogonal to all before them (block Lanczos with full
-//! reorthogonalisation: Golub and Underwood 1977), and the operator is diagonalised in the space that they span. A block as large as
-//! an eigenvalue is often finds all vectors of it: a free body has six at zero. With the inverse as operator these are the smallest ones.
+//! A block of vectors, its image, the image of that and so on are each made orthogonal to all previous vectors (block
+//! Lanczos with full reorthogonalisation: Golub and Underwood 1977). The operator is then diagonalised in the space
+//! that they span. A block at least as large as the multiplicity of an eigenvalue finds all its vectors: a free body
+//! has six with zero frequency. With the inverse as operator, the results are the smallest eigenvalues.
 use super::reduce::dot;
 use super::symmetric;
 
-/// Vectors in a block.
+/// Number of vectors in a block.
 const BLOCK: usize = 8;
 
-/// Eigenvalues, the largest first, and unit vectors.
+/// Eigenvalues in descending order, with unit eigenvectors.
 #[derive(Clone, Debug)]
 pub struct Pairs {
-    /// Eigenvalues.
+    /// Eigenvalues θ.
     pub values: Vec<f64>,
-    /// Vectors.
+    /// Unit eigenvectors x.
     pub vectors: Vec<Vec<f64>>,
-    /// |A x − θ x|/θ of each.
+    /// Relative residual |A x − θ x|/θ of each pair.
     pub left: Vec<f64>,
 }
 
-/// The `count` largest eigenvalues of the operator `apply(x)`, which replaces the columns of length `n` in `x` by their images, each
-/// to a relative `tolerance` of what is left, in a space of at most `most` vectors. `mask` sets to zero what takes no part.
+/// The `count` largest eigenvalues of the operator `apply(x)`, which replaces the columns of length `n` in `x` by their
+/// images. The relative residual of each is at most `tolerance`, and the space has at most `most` vectors. `mask` sets
+/// excluded components of a vector to zero.
 pub fn largest(
     n: usize,
     count: usize,
@@ -59,7 +61,7 @@ pub fn largest(
     }
 }
 
-/// Makes a vector orthogonal to others, and of length one; false where nothing is left of it.
+/// Makes a vector orthogonal to the others and normalises it; false if nothing remains.
 fn orthogonal(vector: &mut [f64], others: &[Vec<f64>]) -> bool {
     let whole = dot(vector, vector).sqrt();
     for _ in 0..2 {
@@ -76,7 +78,7 @@ fn orthogonal(vector: &mut [f64], others: &[Vec<f64>]) -> bool {
     true
 }
 
-/// Products of basis vectors with images, row after row; those known before stay.
+/// Inner products of basis vectors with images, row by row; rows that are already known are kept.
 fn project(products: &mut Vec<Vec<f64>>, basis: &[Vec<f64>], images: &[Vec<f64>]) {
     products.resize(basis.len(), Vec::new());
     for (row, vector) in products.iter_mut().zip(basis) {
@@ -84,7 +86,7 @@ fn project(products: &mut Vec<Vec<f64>>, basis: &[Vec<f64>], images: &[Vec<f64>]
     }
 }
 
-/// Eigenvectors in the space of a basis whose images, and products with them, are known.
+/// Ritz vectors in the space of a basis, from its images and their products with the basis.
 fn ritz(basis: &[Vec<f64>], images: &[Vec<f64>], products: &[Vec<f64>], count: usize) -> Pairs {
     let m = images.len();
     let even: Vec<f64> = (0..m * m).map(|k| 0.5 * (products[k / m][k % m] + products[k % m][k / m])).collect();
@@ -107,7 +109,7 @@ fn ritz(basis: &[Vec<f64>], images: &[Vec<f64>], products: &[Vec<f64>], count: u
     pairs
 }
 
-/// Numbers without a pattern to begin a search with, other ones for each `k`.
+/// Initial vector of length `n` without a pattern, different for each `k`.
 pub fn start(n: usize, k: usize) -> Vec<f64> {
     let mut seed = 0x9e37_79b9_7f4a_7c15_u64.wrapping_mul(2 * k as u64 + 1);
     let mut next = || {

@@ -1,28 +1,28 @@
 //! Small weighted least-squares problems.
 //!
-//! A fit looks for coefficients c that minimise Σ_k w_k (b_k·c − f_k)², where row b_k holds the basis functions at particle
-//! k, translated to the centre of the cloud and scaled by its size (the paper's eqs (10), (14), (15) and the paragraph
-//! below them). What is wanted is rarely c itself but the row of numbers that gives one coefficient from the data,
-//! c_m = Σ_k r_mk f_k: these *weights* depend on geometry only.
+//! A fit determines coefficients c that minimise Σ_k w_k (b_k·c − f_k)², where row b_k holds the basis functions at
+//! particle k, relative to the centre of the cloud and scaled by its size (eqs (10), (14), (15) of the paper and the
+//! paragraph below them). Usually the result is not c but a row of *weights* that gives one coefficient from the data,
+//! c_m = Σ_k r_mk f_k; the weights depend on geometry only.
 //!
-//! The normal equations are tried first (Cholesky); when their conditioning asks for it, the rows are factorised (QR), and
-//! when these are rank deficient too the pseudo-inverse is taken (SVD by one-sided Jacobi rotations, Demmel 1997 §5.4.3).
+//! The normal equations are solved first (Cholesky). If they are ill-conditioned, the rows are factored (QR); if the
+//! rows are rank deficient too, the pseudo-inverse is used (SVD by one-sided Jacobi rotations, Demmel 1997 §5.4.3).
 use super::Vector;
 use super::singular::Singular;
 use super::square::cofactor;
 
-/// Condition number of the scaled normal matrix above which Cholesky is not trusted: √ of it is lost digits of the rows.
+/// Condition number of the scaled normal matrix above which Cholesky is not used; it is the square of that of the rows.
 const CHOLESKY_CONDITION: f64 = 1e8;
-/// Off-diagonal elements, relative to the trace, at which Jacobi rotations end: they converge quadratically, so that the
-/// eigenvalues are exact to round-off.
+/// Ratio of the off-diagonal elements to the trace at which Jacobi rotations end. They converge quadratically, so that
+/// the eigenvalues are then exact to round-off.
 const EIGEN_TOLERANCE: f64 = 1e-9;
-/// Ratio of smallest to largest diagonal of R below which the rows count as rank deficient.
+/// Ratio of smallest to largest diagonal element of R below which the rows are regarded as rank deficient.
 const RANK_TOLERANCE: f64 = 1e-10;
 
-/// Which factorisation a fit needed.
+/// Factorisation that a fit used.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Method {
-    /// Normal equations.
+    /// Cholesky factorisation of the normal equations.
     Cholesky,
     /// Orthogonal factorisation of the rows.
     Qr,
@@ -30,11 +30,11 @@ pub enum Method {
     Svd,
 }
 
-/// Weights w_ij of the derivative ∇f_i = Σ_j w_ij (f_j − f_i), linear fit with weights 1/|d|², and the condition number of
-/// the scaled 2×2 or 3×3 normal matrix.
+/// Weights w_ij of the derivative ∇f_i = Σ_j w_ij (f_j − f_i) [1/length] by a linear fit with weights 1/|d|², and the
+/// condition number of the scaled normal matrix of order 2 or 3.
 ///
-/// The fit passes through the centre: only the slope is free. Exact for linear fields. `None` when the cloud does not
-/// determine a slope (all particles on one line or plane).
+/// The fit is fixed to the value at the centre; only the gradient is free. It is exact for linear fields. `None` if the
+/// cloud does not determine a gradient (all particles on one line or plane).
 #[doc(alias = "eq10")]
 pub fn gradient_weights<const D: usize>(offsets: &[Vector<D>], out: &mut Vec<Vector<D>>) -> Option<f64> {
     out.clear();
@@ -43,8 +43,8 @@ pub fn gradient_weights<const D: usize>(offsets: &[Vector<D>], out: &mut Vec<Vec
     Some(condition)
 }
 
-/// The inverse normal matrix from which [`gradient_weight`] makes every weight of a row, and its condition number; `None` when
-/// it does not determine a slope.
+/// Inverse normal matrix, from which [`gradient_weight`] computes every weight of a row, and its condition number;
+/// `None` if the matrix does not determine a gradient.
 #[inline]
 pub fn normal_inverse<const D: usize>(m: &[[f64; D]; D]) -> Option<([[f64; D]; D], f64)> {
     let condition = condition_symmetric(m);
@@ -54,25 +54,25 @@ pub fn normal_inverse<const D: usize>(m: &[[f64; D]; D]) -> Option<([[f64; D]; D
     Some((invert_symmetric(m)?, condition))
 }
 
-/// Weight of the neighbour at offset `d` in a row with this inverse normal matrix.
+/// Weight of the neighbour at offset `d` in a row with the given inverse normal matrix.
 #[inline]
 pub fn gradient_weight<const D: usize>(inverse: &[[f64; D]; D], d: &Vector<D>) -> Vector<D> {
     let w = 1.0 / d.norm_squared();
     Vector::from_fn(|r| w * (0..D).map(|c| inverse[r][c] * d[c]).sum::<f64>())
 }
 
-/// Share of its trace that a bounded fit adds to the diagonal of the normal matrix.
+/// Fraction of the trace that a bounded fit adds to the diagonal of the normal matrix.
 const BOUND: f64 = 0.05;
 
-/// Like [`normal_inverse`] for `n` neighbours, but weights stay bounded for any offsets: the gradient fades out along
-/// directions in which there are no neighbours. Zero for constant fields; not exact for linear ones.
+/// Inverse normal matrix for `n` neighbours, as [`normal_inverse`], but with bounded weights for any offsets: the
+/// gradient tends to zero in directions without neighbours. It is exact for constant fields, but not for linear ones.
 pub fn bounded_inverse<const D: usize>(m: &[[f64; D]; D], n: usize) -> [[f64; D]; D] {
     let mut m = *m;
     (0..D).for_each(|r| m[r][r] += BOUND * n as f64);
     invert_symmetric(&m).unwrap_or([[0.0; D]; D])
 }
 
-/// Σ d dᵀ/|d|² and the number of offsets.
+/// Normal matrix Σ d dᵀ/|d|² and the number of offsets.
 pub fn normal_matrix<const D: usize>(offsets: impl Iterator<Item = Vector<D>>) -> ([[f64; D]; D], usize) {
     let (mut m, mut n) = ([[0.0; D]; D], 0);
     for d in offsets {
@@ -87,7 +87,7 @@ pub fn normal_matrix<const D: usize>(offsets: impl Iterator<Item = Vector<D>>) -
     (m, n)
 }
 
-/// Inverse of a symmetric positive matrix of order 1, 2 or 3 by cofactors.
+/// Inverse of a symmetric positive definite matrix of order 1, 2 or 3 by cofactors.
 fn invert_symmetric<const D: usize>(m: &[[f64; D]; D]) -> Option<[[f64; D]; D]> {
     let mut inverse = [[0.0; D]; D];
     let det = match D {
@@ -109,7 +109,8 @@ fn invert_symmetric<const D: usize>(m: &[[f64; D]; D]) -> Option<[[f64; D]; D]> 
     Some(inverse)
 }
 
-/// Condition number (ratio of extreme eigenvalues) of a small symmetric positive matrix; infinite when singular.
+/// Condition number (ratio of extreme eigenvalues) of a small symmetric positive definite matrix; infinite if it is
+/// singular.
 #[inline]
 pub fn condition_symmetric<const D: usize>(m: &[[f64; D]; D]) -> f64 {
     if D == 2 {
@@ -120,7 +121,8 @@ pub fn condition_symmetric<const D: usize>(m: &[[f64; D]; D]) -> f64 {
     if low > 0.0 { high / low } else { f64::INFINITY }
 }
 
-/// The same for [a b; b c]: the larger eigenvalue λ is half the trace and more, the other one is the determinant over it.
+/// Condition number of [a b; b c]: the larger eigenvalue λ follows from the trace, the smaller one is the determinant
+/// divided by λ.
 fn condition_of_two([a, b, c]: [f64; 3]) -> f64 {
     let high = 0.5 * (a + c) + (0.25 * (a - c) * (a - c) + b * b).sqrt();
     let determinant = a * c - b * b;
@@ -171,8 +173,8 @@ fn rotate_symmetric<const D: usize>(a: &mut [[f64; D]; D], p: usize, q: usize) {
     }
 }
 
-/// A fit with `n` coefficients to rows that are added one by one: f = c_0 b_0(x) + … + c_n b_n(x), eq. (11) for the basis
-/// 1, x, y, z.
+/// A fit with `n` coefficients to rows that are added one by one: f = c_0 b_0(x) + … + c_n b_n(x), eq. (11) for the
+/// basis 1, x, y, z.
 #[doc(alias = "eq11")]
 #[derive(Clone, Debug, Default)]
 pub struct Fit {
@@ -182,15 +184,15 @@ pub struct Fit {
 }
 
 impl Fit {
-    /// An empty fit with `n` coefficients; reuses the storage of `self`.
+    /// Empties the fit and sets its number of coefficients to `n`; the storage is reused.
     pub fn reset(&mut self, n: usize) {
         self.n = n;
         self.rows.clear();
         self.weights.clear();
     }
 
-    /// Adds the row b·c = f with weight w: a value (Dirichlet) row when b holds the basis functions, a gradient (Neumann)
-    /// row `a·n = g` when b holds their normal derivatives.
+    /// Adds the row b·c = f with weight w: a value (Dirichlet) row if b holds the basis functions, a gradient (Neumann)
+    /// row `a·n = g` if b holds their normal derivatives.
     #[doc(alias = "eq13")]
     #[doc(alias = "eq14")]
     pub fn push(&mut self, basis: &[f64], weight: f64) {
@@ -204,12 +206,12 @@ impl Fit {
         self.weights.len()
     }
 
-    /// True when no row has been added.
+    /// True if no row has been added.
     pub fn is_empty(&self) -> bool {
         self.weights.is_empty()
     }
 
-    /// The numbers r_k with c_m = Σ_k r_k f_k for coefficient `m`, and the factorisation that was needed.
+    /// Weights r_k with c_m = Σ_k r_k f_k for coefficient `m`, and the factorisation that was used.
     #[doc(alias = "eq15")]
     pub fn row_of_inverse(&self, m: usize, out: &mut Vec<f64>) -> Method {
         let scale = self.column_scales();
@@ -227,7 +229,7 @@ impl Fit {
         Method::Svd
     }
 
-    /// Column scales that give the weighted rows unit columns.
+    /// Column scales that normalise the columns of the weighted rows.
     fn column_scales(&self) -> Vec<f64> {
         (0..self.n)
             .map(|c| {
@@ -237,7 +239,7 @@ impl Fit {
             .collect()
     }
 
-    /// Solves (BᵀWB) x = e_m with unit columns; `None` when the matrix is not safely positive.
+    /// Solves (BᵀWB) x = e_m with unit columns; `None` if the matrix is not safely positive definite.
     fn solve_normal(&self, m: usize, scale: &[f64]) -> Option<Vec<f64>> {
         let n = self.n;
         let mut a = vec![0.0; n * n];
@@ -265,7 +267,7 @@ impl Fit {
         }));
     }
 
-    /// Rows √w b with scaled columns, row-major.
+    /// Rows √w b with scaled columns, stored row by row.
     fn scaled_rows(&self, scale: &[f64]) -> Vec<f64> {
         let n = self.n;
         (0..self.len() * n).map(|e| self.weights[e / n].sqrt() * self.rows[e] * scale[e % n]).collect()
@@ -277,7 +279,7 @@ impl Fit {
     }
 }
 
-/// Cholesky factor of a matrix with unit diagonal in its lower triangle; `None` when a pivot is too small.
+/// Cholesky factor, in the lower triangle, of a matrix with unit diagonal; `None` if a pivot is too small.
 fn cholesky(a: &mut [f64], n: usize) -> Option<()> {
     for c in 0..n {
         for r in c..n {
@@ -307,7 +309,7 @@ fn cholesky_solve(l: &[f64], n: usize, x: &mut [f64]) {
     }
 }
 
-/// Row `m` of the pseudo-inverse of the `rows`×`n` matrix by Householder QR; `None` when rank deficient.
+/// Row `m` of the pseudo-inverse of the `rows`×`n` matrix by QR factorisation; `None` if it is rank deficient.
 fn qr_row(a: &[f64], rows: usize, n: usize, m: usize) -> Option<Vec<f64>> {
     if rows < n {
         return None;

@@ -1,4 +1,5 @@
-//! Arithmetic that knows no physics: small vectors, least squares, sparse blocks and full matrices, Krylov methods, parallel loops and sums over rows.
+//! Mathematics without physics: small vectors, least squares, sparse block matrices and dense matrices, Krylov methods,
+//! parallel loops and sums over rows.
 pub mod block_matrix;
 pub mod blocks;
 pub mod circulant;

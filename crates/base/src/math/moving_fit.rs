@@ -1,24 +1,25 @@
-//! Weighted fits of vector fields: what values at scattered nodes say of a field at a point (Lancaster and Salkauskas 1981).
+//! Weighted fits of vector fields at a point to values at scattered nodes (Lancaster and Salkauskas 1981).
 //!
-//! A field is sought among combinations of a few basis fields; the one that is nearest to the values, each with its weight, is known
-//! by the weights of the values in what is asked of it. Basis fields that the nodes cannot tell from earlier ones are left
-//! out, so that nodes in a line or a plane, or fewer of them than basis fields, are no special case; what is in the span of those
-//! that stay comes back to round-off.
+//! The field is the combination of a few basis fields that is nearest to the values, each with its own weight. The
+//! result, e.g. the field at a point, is expressed as weights of the values. Basis fields that the nodes cannot
+//! distinguish from earlier ones are omitted, so that nodes on a line or a plane, or too few nodes, need no special
+//! treatment. A field in the span of the remaining basis fields is reproduced to round-off.
 
-/// Part of a basis field that earlier ones may explain before it counts as one of them.
+/// Maximum fraction of a basis field that remains after subtraction of earlier ones for it to be regarded as dependent
+/// on them.
 const NEW: f64 = 1e-7;
 
 /// A basis field.
 #[derive(Clone, Debug)]
 pub struct Basis {
-    /// Its values at the nodes, all components one after another.
+    /// Values at the nodes, all components one after another.
     pub at_nodes: Vec<f64>,
-    /// What is asked, of this field.
+    /// The requested results for this basis field, e.g. its components at a point.
     pub asked: Vec<f64>,
 }
 
-/// Weights of the values at the nodes in what is asked, `asked` rows of as many weights as there are values, for the weights
-/// `of_values` of the values in the fit.
+/// Weights of the values at the nodes in each requested result, stored as one row of weights for each result;
+/// `of_values` are the weights of the values in the fit.
 pub fn weights(basis: Vec<Basis>, of_values: &[f64]) -> Vec<f64> {
     let asked = basis.first().map_or(0, |b| b.asked.len());
     let n = of_values.len();
@@ -28,7 +29,7 @@ pub fn weights(basis: Vec<Basis>, of_values: &[f64]) -> Vec<f64> {
     for mut field in basis {
         field.at_nodes.iter_mut().zip(&root).for_each(|(v, w)| *v *= w);
         let size = dot(&field.at_nodes, &field.at_nodes).sqrt();
-        // twice is enough (Giraud et al. 2005)
+        // two passes are sufficient (Giraud et al. 2005)
         for _ in 0..2 {
             for q in &known {
                 let part = dot(&q.at_nodes, &field.at_nodes);
@@ -56,7 +57,7 @@ pub fn weights(basis: Vec<Basis>, of_values: &[f64]) -> Vec<f64> {
 mod tests {
     use super::*;
 
-    /// Powers of x at the places `x`, their value and slope at 0.3.
+    /// Powers of x at the positions `x`, with their value and slope at 0.3.
     fn powers(x: &[f64]) -> Vec<Basis> {
         (0..3)
             .map(|p| Basis {
@@ -74,7 +75,7 @@ mod tests {
             |row: usize, f: fn(f64) -> f64| found[row * 5..][..5].iter().zip(x).map(|(w, x)| w * f(x)).sum::<f64>();
         assert!((of(0, |x| 1.0 - 2.0 * x + 3.0 * x * x) - 0.67).abs() < 1e-13);
         assert!((of(1, |x| 1.0 - 2.0 * x + 3.0 * x * x) + 0.2).abs() < 1e-12);
-        // two nodes know no parabola
+        // two nodes do not determine a parabola
         let few = weights(powers(&x[..2]), &[1.0; 2]);
         assert!((few[0] - -0.5).abs() < 1e-13 && (few[1] - 1.5).abs() < 1e-13 && (few[3] - 5.0).abs() < 1e-12);
     }

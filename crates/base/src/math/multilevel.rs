@@ -1,65 +1,68 @@
-//! Sweeps on a hierarchy of ever coarser matrices.
+//! Multilevel sweeps on a hierarchy of coarser and coarser matrices.
 //!
-//! Rows are gathered into groups of a few strongly coupled neighbours; the row of a group is the mean of those of its members
-//! by their volumes (Galerkin with piecewise-constant transfer; Lallemand, Steve and Dervieux 1992). What members of a group
-//! pass to one another then cancels, and from the first-order upwind operator comes a first-order upwind operator on a coarser cloud.
+//! Rows are combined into groups of a few strongly coupled neighbours. The row of a group is the volume-weighted mean
+//! of the rows of its members (Galerkin with piecewise-constant transfer; Lallemand, Steve and Dervieux 1992). Fluxes
+//! between members of a group then cancel, and the first-order upwind operator becomes a first-order upwind operator on
+//! a coarser cloud.
 //!
-//! The same hierarchy serves systems that repeat in time, harmonic by harmonic ([`super::circulant`]).
+//! The same hierarchy solves systems that are periodic in time, harmonic by harmonic ([`super::circulant`]).
 use super::block_matrix::{BlockMatrix, Sweeps};
 use super::circulant::{HarmonicSweeps, MOST_HARMONICS};
 use super::fourier::Instances;
 use super::groups::Groups;
 use super::parallel::{sweep, sweep_rows};
 
-/// Rows at which coarsening stops.
+/// Number of rows at which coarsening stops.
 const COARSEST: usize = 60;
-/// Sweeps on the coarsest level.
+/// Number of sweeps on the coarsest level.
 const COARSEST_SWEEPS: usize = 8;
-/// Part of what a coarser level finds that the finer one takes. All of it serves best where nothing jumps (laminar flow takes 15 %
-/// more iterations with 0.8), but goes too far at shocks: a transonic section takes 308 linear iterations with 1, 137 with 0.8, 109 with 0.6.
+/// Relaxation factor of the coarse-level correction. The full correction is best for smooth flow (laminar flow takes 15
+/// % more iterations with 0.8) but overshoots at shocks: a transonic aerofoil takes 308 linear iterations with 1, 137
+/// with 0.8, 109 with 0.6.
 const STEP: f32 = 0.8;
 
-/// Unknowns of a row at all instances of a period, at most.
+/// Maximum number of unknowns of a row at all instances of a period.
 const MOST_VALUES: usize = 6 * (2 * MOST_HARMONICS + 1);
 
-/// How a cycle visits the levels.
+/// Parameters of a multigrid cycle.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Cycle {
-    /// Symmetric sweeps before and after the coarse correction.
+    /// Number of symmetric sweeps before and after the coarse-level correction.
     pub sweeps: usize,
-    /// Visits to the next coarser level: 1 is a V-cycle, 2 a W-cycle.
+    /// Number of visits to the next coarser level: 1 is a V-cycle, 2 a W-cycle.
     pub visits: usize,
-    /// Greatest number of levels; 1 means plain sweeps.
+    /// Maximum number of levels; 1 means sweeps without coarser levels.
     pub levels: usize,
 }
 
 struct Level {
     matrix: BlockMatrix,
     groups: Groups,
-    /// Part with which each row counts in its group.
+    /// Weight of each row in its group.
     share: Vec<f32>,
     sweeps: Sweeps,
     harmonic_sweeps: Option<HarmonicSweeps>,
 }
 
-/// A matrix and its coarser versions.
+/// A matrix with its coarser levels.
 pub struct Multilevel {
     levels: Vec<Level>,
     cycle: Cycle,
     times: Option<Times>,
 }
 
-/// Transforms between instances of a period and coefficients in the order of [`HarmonicSweeps`].
+/// Transforms between the instances of a period and coefficients in the order of [`HarmonicSweeps`].
 struct Times {
-    /// Coefficient by coefficient, from values.
+    /// Weights of the values in each coefficient, coefficient by coefficient.
     forth: Vec<f32>,
-    /// Instance by instance, from coefficients.
+    /// Weights of the coefficients in each value, instance by instance.
     back: Vec<f64>,
     count: usize,
 }
 
 impl Multilevel {
-    /// Builds the hierarchy from the pattern of `matrix`, whose rows tell of these volumes, with groups of `size` rows or fewer.
+    /// Builds the hierarchy from the pattern of `matrix`, whose rows have the volumes `volume`, with groups of at most
+    /// `size` rows.
     pub fn new(matrix: BlockMatrix, mut volume: Vec<f64>, size: usize, cycle: Cycle) -> Self {
         let mut levels = vec![level(matrix)];
         while levels.len() < cycle.levels {
@@ -83,8 +86,9 @@ impl Multilevel {
         Self { levels, cycle, times: None }
     }
 
-    /// The same for (A + ∂/∂t) x = b at the instances of a period of frequency `omega`: vectors hold, for each row, the
-    /// unknowns of the first instance, then those of the second, and so on. Without `mean` what is sought has none.
+    /// This hierarchy for (A + ∂/∂t) x = b at the instances of a period of angular frequency `omega`. Vectors hold, for
+    /// each row, the unknowns of the first instance, then those of the second, and so on. Without `mean`, the solution
+    /// has zero mean.
     pub fn in_time(mut self, instances: Instances, omega: f64, mean: bool) -> Self {
         for level in &mut self.levels {
             level.harmonic_sweeps = Some(HarmonicSweeps::new(&level.matrix, instances.harmonics(), omega, mean));
@@ -98,12 +102,12 @@ impl Multilevel {
         self
     }
 
-    /// The finest matrix, to be filled.
+    /// The finest matrix, for assembly.
     pub fn finest(&mut self) -> &mut BlockMatrix {
         &mut self.levels[0].matrix
     }
 
-    /// Carries a newly filled finest matrix to all levels.
+    /// Recomputes all coarser levels after an assembly of the finest matrix.
     pub fn refresh(&mut self) {
         for k in 0..self.levels.len() {
             let (fine, coarse) = self.levels.split_at_mut(k + 1);
@@ -121,7 +125,7 @@ impl Multilevel {
         }
     }
 
-    /// z ≈ A⁻¹ r, where `r(i, row)` sets row i of the right-hand side.
+    /// Computes z ≈ A⁻¹ r, where `r(i, row)` sets row i of the right-hand side.
     pub fn apply(&mut self, r: impl Fn(usize, &mut [f32]) + Sync, z: &mut [f64]) {
         if let Some(times) = &self.times {
             return apply_in_time(&mut self.levels, self.cycle, times, r, z);
@@ -138,7 +142,7 @@ impl Multilevel {
         sweep(z, |k| f64::from(matrix.leave(&sweeps.x, k)));
     }
 
-    /// Bytes held.
+    /// Memory in use (bytes).
     pub fn bytes(&self) -> usize {
         let harmonic_sweeps = |l: &Level| l.harmonic_sweeps.as_ref().map_or(0, HarmonicSweeps::bytes);
         self.levels
@@ -147,7 +151,7 @@ impl Multilevel {
             .sum()
     }
 
-    /// Rows of each level.
+    /// Number of rows of each level.
     pub fn sizes(&self) -> Vec<usize> {
         self.levels.iter().map(|l| l.matrix.n_rows()).collect()
     }
@@ -158,7 +162,7 @@ fn level(matrix: BlockMatrix) -> Level {
     Level { groups: Groups::default(), share: Vec::new(), sweeps, matrix, harmonic_sweeps: None }
 }
 
-/// The place of coefficient `c` (mean, cosine, sine, cosine, ...) among mean, cosines, sines.
+/// Index of coefficient `c` of the order (mean, cosine, sine, cosine, ...) in the order mean, cosines, sines.
 fn sorted(c: usize, count: usize) -> usize {
     match c {
         0 => 0,
@@ -171,7 +175,7 @@ fn apply_in_time(levels: &mut [Level], how: Cycle, times: &Times, r: impl Fn(usi
     let (n, count) = (levels[0].matrix.block(), times.count);
     let Level { matrix, harmonic_sweeps, .. } = &mut levels[0];
     let Some(finest) = harmonic_sweeps.as_mut() else { return };
-    // places inside a row: (instance or coefficient, unknown)
+    // positions inside a row: (instance or coefficient, unknown)
     let row = |k: usize| (k / (n * count) * n * count, k / n % count, k % n);
     sweep_rows(&mut finest.b, n * count, |i, b| {
         let mut values = [0.0; MOST_VALUES];
@@ -218,12 +222,12 @@ impl Level {
         }
     }
 
-    /// Unknowns of a row.
+    /// Number of unknowns of a row.
     fn width(&self) -> usize {
         self.matrix.block() * self.harmonic_sweeps.as_ref().map_or(1, HarmonicSweeps::count)
     }
 
-    /// What is left of the right-hand side.
+    /// Residual of the right-hand side.
     fn left(&self) -> &[f32] {
         self.harmonic_sweeps.as_ref().map_or(&self.sweeps.side, |w| &w.r)
     }
@@ -287,7 +291,7 @@ mod tests {
 
     #[test]
     fn coarse_rows_conserve_what_fine_rows_conserve() {
-        // what rows of a ring hand on, each over its own volume
+        // fluxes between the rows of a ring, each divided by its own volume
         let n = 240;
         let volume: Vec<f64> = (0..n).map(|i| [1.0, 0.3, 4.0, 0.02][i * i % 7 % 4]).collect();
         let first: Vec<u32> = (0..=n as u32).map(|i| 2 * i).collect();
@@ -310,7 +314,7 @@ mod tests {
         volume.iter().zip(fine.groups.of()).for_each(|(v, g)| gathered[*g as usize] += v);
         let passed: Vec<f64> = coarse.product(&x).chunks(2).zip(gathered).map(|(r, v)| f64::from(r[0]) * v).collect();
         let size: f64 = passed.iter().map(|p| p.abs()).sum();
-        // blocks are rounded to a 254th; sums of rows as they are would be off by 6 %
+        // blocks are rounded to 1/254; an unweighted sum of rows would be wrong by 6 %
         let sum: f64 = passed.iter().sum();
         assert!(sum.abs() < 0.03 * size, "{sum} {size}");
     }

@@ -1,32 +1,32 @@
-//! The parallel loops.
+//! Parallel loops.
 //!
-//! Every loop over particles goes through this file. A loop gathers what it needs and writes its own slot, or owns one
-//! contiguous *part* of the output, so that the result is the same bits for any number of threads. Sums, norms and largest values over
-//! rows are in [`reduce`](super::reduce).
+//! Every loop over particles uses the functions of this file. A loop gathers its input and writes its own entry, or it
+//! owns one contiguous *part* of the output, so that results are identical for any number of threads. Sums, norms and
+//! maxima over rows are in [`reduce`](super::reduce).
 use std::ops::Range;
 
 use rayon::slice::ParallelSliceMut;
 
-/// Particles in one chunk of a parallel loop or of a sum.
+/// Number of particles in one chunk of a parallel loop or of a sum.
 pub const CHUNK: usize = 1024;
-/// Most pieces that a loop is cut into where each slot is much work: enough that no thread waits long for another.
+/// Maximum number of pieces of a loop with expensive entries: enough that no thread waits long for another.
 const PIECES: usize = 1024;
 
-/// Threads that loops are shared out to.
+/// Number of threads of parallel loops.
 pub fn threads() -> usize {
     rayon::current_num_threads()
 }
 
-// A loop meets the threads in `both` alone, which is compiled once for all of them. A call of a function that is known only at
-// run time costs nothing beside a chunk, and what the chunk holds is a plain loop, compiled for the formula inside it.
+// All loops distribute work by `both` only, which is compiled once. The cost of a call through a function pointer is
+// negligible compared with a chunk, and the chunk itself is a plain loop that is compiled for its formula.
 
-/// Runs `a` and `b`, at the same time if a thread is free.
+/// Runs `a` and `b`, concurrently if a thread is free.
 pub(super) fn both(a: &mut (dyn FnMut() + Send), b: &mut (dyn FnMut() + Send)) {
     rayon::join(a, b);
 }
 
-/// Calls `f(k, piece)` for every piece of `width` values of `out`, the last of which may be shorter; `first` is the number of
-/// the first.
+/// Calls `f(k, piece)` for every piece of `width` values of `out`, of which the last may be shorter; `first` is the
+/// index of the first piece.
 pub(super) fn each_piece<T: Send>(first: usize, width: usize, out: &mut [T], f: &(dyn Fn(usize, &mut [T]) + Sync)) {
     match out.len().div_ceil(width) {
         0 => {}
@@ -52,7 +52,7 @@ pub fn sweep<T: Send>(out: &mut [T], f: impl Fn(usize) -> T + Sync) {
     sweep_slots(out, |i, slot| *slot = f(i));
 }
 
-/// Calls `f(i, slot)` for every slot of `out`.
+/// Calls `f(i, slot)` for every entry of `out`.
 pub fn sweep_slots<T: Send>(out: &mut [T], f: impl Fn(usize, &mut T) + Sync) {
     each_piece(0, CHUNK, out, &|c, chunk| {
         for (k, slot) in chunk.iter_mut().enumerate() {
@@ -61,12 +61,12 @@ pub fn sweep_slots<T: Send>(out: &mut [T], f: impl Fn(usize, &mut T) + Sync) {
     });
 }
 
-/// Sets `out[i] = f(i)` for every `i` where each one is much work.
+/// Sets `out[i] = f(i)` for every `i`, for expensive entries.
 pub fn sweep_each<T: Send>(out: &mut [T], f: impl Fn(usize) -> T + Sync) {
     sweep_each_slot(out, |i, slot| *slot = f(i));
 }
 
-/// Calls `f(i, slot)` for every slot of `out` where each one is much work.
+/// Calls `f(i, slot)` for every entry of `out`, for expensive entries.
 pub fn sweep_each_slot<T: Send>(out: &mut [T], f: impl Fn(usize, &mut T) + Sync) {
     let width = out.len().div_ceil(PIECES).max(1);
     each_piece(0, width, out, &|c, piece| {
@@ -76,12 +76,12 @@ pub fn sweep_each_slot<T: Send>(out: &mut [T], f: impl Fn(usize, &mut T) + Sync)
     });
 }
 
-/// Calls `f(c, chunk)` for every chunk of `width` values of `out` where each one is much work.
+/// Calls `f(c, chunk)` for every chunk of `width` values of `out`, for expensive chunks.
 pub fn sweep_each_chunk<T: Send>(out: &mut [T], width: usize, f: impl Fn(usize, &mut [T]) + Sync) {
     each_piece(0, width, out, &f);
 }
 
-/// The numbers `0..n` in the order of `key`, ties in their own order.
+/// The indices `0..n` sorted by `key`; equal keys keep their order.
 pub fn order_by_key(n: usize, key: impl Fn(usize) -> u64 + Sync) -> Vec<u32> {
     let mut keys = vec![(0, 0); n];
     sweep(&mut keys, |i| (key(i), i as u32));
@@ -98,7 +98,7 @@ pub fn sweep_rows<T: Send>(out: &mut [T], width: usize, f: impl Fn(usize, &mut [
     });
 }
 
-/// Calls `f(k, slice)` for every part `k`, where `slice` holds the rows `parts[k]` of `out`, `width` values each.
+/// Calls `f(k, slice)` for every part `k`, where `slice` holds the rows `parts[k]` of `out`, with `width` values each.
 ///
 /// The parts must follow one another without gaps from row zero.
 pub fn sweep_parts<T: Send>(
@@ -121,10 +121,10 @@ fn split_parts<T: Send>(first: usize, cut: &mut Cut<'_, T>, f: &(dyn Fn(usize, &
     }
 }
 
-/// Parts, values a row, and the output they cut.
+/// Row ranges of the parts, number of values in a row, and the output that is divided.
 pub type Cut<'a, T> = (&'a [Range<usize>], usize, &'a mut [T]);
 
-/// [`sweep_parts`] with two outputs that are cut into the same number of parts.
+/// Calls a function for every part of two outputs, as [`sweep_parts`]; both have the same number of parts.
 pub fn sweep_two_parts<T: Send, U: Send>(
     mut a: Cut<'_, T>,
     mut b: Cut<'_, U>,
@@ -133,7 +133,7 @@ pub fn sweep_two_parts<T: Send, U: Send>(
     split_two_parts(0, &mut a, &mut b, f);
 }
 
-/// What is done with a part of either output.
+/// Function that is called with a part of either output.
 type OnTwoParts<'f, T, U> = dyn Fn(usize, &mut [T], &mut [U]) + Sync + 'f;
 
 fn split_two_parts<T: Send, U: Send>(first: usize, a: &mut Cut<'_, T>, b: &mut Cut<'_, U>, f: &OnTwoParts<'_, T, U>) {
@@ -155,23 +155,23 @@ fn halve<'a, T>((parts, width, out): &'a mut Cut<'_, T>) -> (Cut<'a, T>, Cut<'a,
     ((left, *width, a), (right, *width, b))
 }
 
-/// Cuts `0..n` into parts of about `size` rows.
+/// Divides `0..n` into parts of about `size` rows.
 pub fn parts(n: usize, size: usize) -> Vec<Range<usize>> {
     let count = n.div_ceil(size).max(1);
     (0..count).map(|k| k * n / count..(k + 1) * n / count).collect()
 }
 
-/// Calls `f(range, slots)` for consecutive slots of `out`, a chunk at a time.
+/// Calls `f(range, slots)` for consecutive entries of `out`, one chunk at a time.
 pub fn sweep_chunks<T: Send>(out: &mut [T], f: impl Fn(Range<usize>, &mut [T]) + Sync) {
     each_piece(0, CHUNK, out, &|c, chunk| f(c * CHUNK..c * CHUNK + chunk.len(), chunk));
 }
 
-/// Copies `from`, which is as long, to `out`.
+/// Copies `from` to `out`, which has the same length.
 pub fn copy<T: Copy + Send + Sync>(from: &[T], out: &mut [T]) {
     sweep_chunks(out, |range, out| out.copy_from_slice(&from[range]));
 }
 
-/// Sets every slot of `out` to `value`.
+/// Sets every entry of `out` to `value`.
 pub fn fill<T: Copy + Send + Sync>(out: &mut [T], value: T) {
     sweep_chunks(out, |_, out| out.fill(value));
 }

@@ -1,27 +1,28 @@
-//! Poles of a signal that is a sum of exponentials: the matrix pencil.
+//! Poles of a signal that is a sum of exponentials, by the matrix pencil method.
 //!
-//! Samples y_k = Σ_m c_m z_m^k at even steps fill the matrix Y with rows (y_i, …, y_{i+L}), whose rows span the powers (1, z, …, z^L)
-//! of the poles. With V the M leading right singular vectors of Y, V₁ without the last and V₂ without the first of their entries, the
-//! eigenvalues of V₁⁺ V₂ are the poles; noise is left behind in the other singular vectors. L between a third and a half of the
-//! number of samples is least sensitive to noise (Hua and Sarkar 1990, IEEE Trans. ASSP 38, 814).
+//! Samples y_k = Σ_m c_m z_m^k at equal steps form the matrix Y with rows (y_i, …, y_{i+L}), which span the powers (1,
+//! z, …, z^L) of the poles. Let V be the M leading right singular vectors of Y, V₁ these vectors without their last and
+//! V₂ without their first entry. The eigenvalues of V₁⁺ V₂ are the poles, and noise remains in the other singular
+//! vectors. An L between a third and a half of the number of samples is least sensitive to noise (Hua and Sarkar 1990,
+//! IEEE Trans. ASSP 38, 814).
 use num_complex::Complex64;
 
 use super::dense::Factors;
 use super::eigenvalues::eigenvalues;
 use super::singular::Singular;
 
-/// Part of the samples that a row of the pencil holds.
+/// Number of samples divided by the length L of a row of the pencil.
 const REACH: usize = 3;
 
-/// The spaces of a signal, from which poles of any number are found.
+/// Singular vectors of a signal, from which any number of poles can be computed.
 #[derive(Clone, Debug)]
 pub struct Pencil {
-    /// Right singular vectors, that of the largest singular value first.
+    /// Right singular vectors, in descending order of the singular values.
     vectors: Vec<Vec<f64>>,
 }
 
 impl Pencil {
-    /// That of samples at even steps.
+    /// The pencil of samples at equal steps.
     pub fn of(samples: &[f64]) -> Self {
         let length = samples.len() / REACH;
         let rows = samples.len() - length;
@@ -32,7 +33,7 @@ impl Pencil {
         Self { vectors: all.into_iter().map(|(_, vector)| vector).collect() }
     }
 
-    /// The `count` poles z; `None` when there are not as many.
+    /// The `count` poles z; `None` if the signal has fewer.
     pub fn poles(&self, count: usize) -> Option<Vec<Complex64>> {
         let leading = self.vectors.get(..count)?;
         let length = leading.first()?.len() - 1;

@@ -1,63 +1,65 @@
 //! Rational functions through a few values on the imaginary axis.
 //!
-//! Functions with f(s̄) = f̄(s) are known at s = iω_m and share one denominator,
+//! Functions with f(s̄) = f̄(s) are known at s = iω_m and are approximated with a common denominator,
 //!
 //! r(s) = Σ_j w_j f_j/(s − z_j) / Σ_j w_j/(s − z_j),
 //!
-//! which has the value f_j at each support point z_j whatever the weights. The AAA algorithm (Nakatsukasa, Sète and Trefethen, SIAM J.
-//! Sci. Comput. 40, 2018; for sets of functions Lietaert, Meerbergen, Pérez and Vandereycken, IMA J. Numer. Anal. 42, 2022,
-//! doi:10.1093/imanum/drab098) takes as support points, one after another, the samples that are missed most; the weights of length one
-//! minimise Σ_m |Σ_j w_j (f(iω_m) − f_j)/(iω_m − z_j)|² over the other samples and all functions, each over its largest modulus. Here
-//! support points come in pairs ±iω with weights w and w̄, so that the unknowns are real and r(s̄) = r̄(s) holds to the last bit; the
-//! sample at zero is fitted where that is enough.
+//! which has the value f_j at each support point z_j for any weights. The AAA algorithm (Nakatsukasa, Sète and
+//! Trefethen, SIAM J. Sci. Comput. 40, 2018; for sets of functions Lietaert, Meerbergen, Pérez and Vandereycken, IMA J.
+//! Numer. Anal. 42, 2022, doi:10.1093/imanum/drab098) selects the samples with the largest error as support points, one
+//! after another. The weights, of unit norm, minimise Σ_m |Σ_j w_j (f(iω_m) − f_j)/(iω_m − z_j)|² over the other
+//! samples and all functions, each divided by its largest modulus. Here support points are pairs ±iω with weights w and
+//! w̄, so that the unknowns are real and r(s̄) = r̄(s) holds exactly. The sample at zero is fitted, and becomes a
+//! support point only if necessary.
 //!
-//! Limits: nothing keeps poles out of the right half plane or off the axis where samples carry more noise than `tolerance` allows; see
-//! [`Rational::poles`]. Far beyond the highest sample r tends to a constant, or grows like s² where
-//! weights with the sum zero were found, as for forces of inertia.
+//! Limits: if samples contain more noise than `tolerance` allows, poles may lie in the right half plane or on the axis;
+//! see [`Rational::poles`]. Far above the highest sample, r tends to a constant, or grows like s² if the sum of the
+//! weights is zero, as for inertia forces.
 use num_complex::Complex64;
 
 use super::eigenvalues::eigenvalues;
 use super::singular::Singular;
 
-/// Misfit below which all is round-off, and more support points would only follow it.
+/// Error at round-off level: more support points would only fit rounding errors.
 const ROUND_OFF: f64 = 1e-13;
-/// Singular value, over the largest, below which its vector of weights fits as well as any.
+/// Ratio of a singular value to the largest one below which its vector of weights is regarded as an exact solution.
 const NULL: f64 = 1e-13;
 const ZERO: Complex64 = Complex64::new(0.0, 0.0);
 
-/// Support points iω and −iω, or the one at zero.
+/// A pair of support points iω and −iω, or the one at zero.
 #[derive(Clone, Debug)]
 struct Support {
     omega: f64,
-    /// Of iω; that of −iω is its conjugate.
+    /// Weight of iω; that of −iω is its conjugate.
     weight: Complex64,
-    /// At iω.
+    /// Values at iω.
     values: Vec<Complex64>,
 }
 
-/// Rational functions with one denominator, real on the real axis.
+/// Rational functions with a common denominator, real on the real axis.
 #[derive(Clone, Debug)]
 pub struct Rational {
     support: Vec<Support>,
     misfit: f64,
-    /// There is one sample alone: its values hold above the real axis, their conjugates below.
+    /// True for a single sample: the functions have its values above the real axis and their conjugates below.
     constant: bool,
 }
 
-/// What is fitted.
+/// Samples of all functions.
 struct Samples {
     omegas: Vec<f64>,
     values: Vec<Vec<Complex64>>,
-    /// Largest modulus of each function; one for a function that is zero.
+    /// Largest modulus of each function; 1 for a function that is zero.
     scales: Vec<f64>,
 }
 
 impl Rational {
-    /// Functions with the values that `samples` lists: ω ≥ 0, each once, in any order, with those of all functions at iω; at ω = 0 real
-    /// parts count. Support points are added until the worst misfit at a sample, over the largest modulus of the function, is at most
-    /// `tolerance` or the other samples are too few for more weights; the best of these functions is returned. Two samples that no
-    /// function of first order has are met by one without poles on the axis; one sample is a constant, its conjugate below the real axis.
-    /// `None` when there are no samples, or values are missing or not finite.
+    /// Fits functions to `samples`: frequencies ω ≥ 0, each only once and in any order, with the values of all
+    /// functions at iω; at ω = 0 only real parts are used. Support points are added until the maximum error at a
+    /// sample, divided by the largest modulus of the function, is at most `tolerance`, or until the other samples are
+    /// too few for more weights; the result is the best of these fits. If no function of first order fits two samples,
+    /// the result is one without poles on the axis. One sample gives a constant above the real axis and its conjugate
+    /// below. Returns `None` if there are no samples, or if values are missing or not finite.
     pub fn of(samples: &[(f64, Vec<Complex64>)], tolerance: f64) -> Option<Self> {
         let samples = Samples::new(samples)?;
         let count = samples.omegas.len();
@@ -94,7 +96,7 @@ impl Rational {
                 return point.values.iter().map(|value| of_half(*value, s.im)).collect();
             }
             let ahead = point.weight / (s - Complex64::new(0.0, point.omega));
-            // the point at zero has no partner
+            // the support point at zero has no conjugate partner
             let partner =
                 if point.omega == 0.0 { ZERO } else { point.weight.conj() / (s + Complex64::new(0.0, point.omega)) };
             below += ahead + partner;
@@ -103,18 +105,19 @@ impl Rational {
         above.into_iter().map(|sum| sum / below).collect()
     }
 
-    /// Worst misfit at a sample, over the largest modulus of the function.
+    /// Maximum error at a sample, divided by the largest modulus of the function.
     pub fn misfit(&self) -> f64 {
         self.misfit
     }
 
-    /// Poles: zeros of Σ w_j/(s − z_j). With W = Σ w_j they are the eigenvalues but one, which is zero, of z − e (wᵀz)/W, here for the real
-    /// and imaginary parts of the pairs. None are told when W = 0 or they do not converge.
+    /// Poles: zeros of Σ w_j/(s − z_j). With W = Σ w_j they are the eigenvalues, except one that is zero, of z − e
+    /// (wᵀz)/W, here written for the real and imaginary parts of the pairs. Empty if W = 0 or the eigenvalues do not
+    /// converge.
     pub fn poles(&self) -> Vec<Complex64> {
         if self.constant {
             return Vec::new();
         }
-        // rows of each point: real part, and imaginary part but at zero
+        // rows of each support point: real part and, except at zero, imaginary part
         let parts = |point: &Support| if point.omega == 0.0 { 1 } else { 2 };
         let n: usize = self.support.iter().map(parts).sum();
         let (mut matrix, mut row, mut ones) = (vec![0.0; n * n], vec![0.0; n], vec![0.0; n]);
@@ -138,7 +141,7 @@ impl Rational {
     }
 }
 
-/// The value above, below or on the real axis that `value` above it stands for.
+/// Value above, below or on the real axis that corresponds to `value` above it.
 fn of_half(value: Complex64, height: f64) -> Complex64 {
     if height > 0.0 {
         value
@@ -187,8 +190,9 @@ impl Samples {
         self.values.iter().map(|v| self.distance(v, &means)).collect()
     }
 
-    /// The sample that is missed most, while the others still determine the weights; then that at zero. Before, it is better fitted: as
-    /// a support point it ties the functions to a place where few samples follow a logarithm, as Theodorsen's function has one there.
+    /// Next support point: the sample with the largest error, as long as the others still determine the weights, and
+    /// the one at zero last. It is better fitted before: Theodorsen's function has a logarithmic singularity at zero,
+    /// which few samples resolve.
     fn next(&self, chosen: &[usize], misfits: &[f64]) -> Option<usize> {
         let left: Vec<usize> = (0..misfits.len()).filter(|m| !chosen.contains(m)).collect();
         let pairs = left.iter().filter(|m| self.omegas[**m] > 0.0).copied();
@@ -198,7 +202,7 @@ impl Samples {
         worst.filter(|m| first || self.determine(chosen, *m)).or(zero.filter(|m| self.determine(chosen, *m)))
     }
 
-    /// True when the samples other than `chosen` and `next` have as many equations as weights are free: all but a common factor.
+    /// True if the samples other than `chosen` and `next` give enough equations for the weights up to a common factor.
     fn determine(&self, chosen: &[usize], next: usize) -> bool {
         let numbers = |m: usize| if self.omegas[m] == 0.0 { 1 } else { 2 };
         let all: usize = (0..self.omegas.len()).map(numbers).sum();
@@ -218,7 +222,8 @@ impl Samples {
         found
     }
 
-    /// Column of the misfits at the other samples for the weight `w` of support point `j`, times the denominator.
+    /// Column of the errors at the other samples for the weight `w` of support point `j`, multiplied by the
+    /// denominator.
     fn column(&self, chosen: &[usize], j: usize, w: Complex64) -> Vec<f64> {
         let (omega, values) = (self.omegas[j], &self.values[j]);
         let mut column = Vec::new();
@@ -234,7 +239,7 @@ impl Samples {
         column
     }
 
-    /// Weights of the support points `chosen` that miss the other samples least.
+    /// Weights of the support points `chosen` that minimise the errors at the other samples.
     fn weights(&self, chosen: &[usize]) -> Vec<Complex64> {
         let parts: Vec<(usize, Complex64)> = chosen.iter().flat_map(|j| self.parts(*j)).collect();
         let found = Singular::of(parts.iter().map(|(j, w)| self.column(chosen, *j, *w)).collect());
@@ -242,7 +247,7 @@ impl Samples {
         let (least, most) = sizes.iter().fold((f64::INFINITY, 0.0f64), |(l, m), s| (l.min(*s), m.max(*s)));
         let null: Vec<&Vec<f64>> =
             found.right.iter().zip(&sizes).filter(|(_, s)| **s <= least.max(NULL * most)).map(|(v, _)| v).collect();
-        // where several do, the one next to weights that have no poles on the axis
+        // if several do, those nearest to weights without poles on the axis
         let wanted = self.alternating(chosen);
         let share = |v: &[f64]| -> f64 { self.split(chosen, &wanted).iter().zip(v).map(|(a, b)| a * b).sum() };
         let shares: Vec<f64> = if null.len() == 1 { vec![1.0] } else { null.iter().map(|v| share(v)).collect() };
@@ -254,20 +259,20 @@ impl Samples {
         weights
     }
 
-    /// Unit weights of one support point: real and imaginary, at zero real.
+    /// Unit weights of one support point: real and imaginary; only real at zero.
     fn parts(&self, j: usize) -> Vec<(usize, Complex64)> {
         let real = (j, Complex64::from(1.0));
         if self.omegas[j] == 0.0 { vec![real] } else { vec![real, (j, Complex64::i())] }
     }
 
-    /// Real numbers that make up weights, in the order of the parts.
+    /// Real parameters of the given weights, in the order of [`Self::parts`].
     fn split(&self, chosen: &[usize], weights: &[Complex64]) -> Vec<f64> {
         let of = |(j, w): (&usize, &Complex64)| if self.omegas[*j] == 0.0 { vec![w.re] } else { vec![w.re, w.im] };
         chosen.iter().zip(weights).flat_map(of).collect()
     }
 
-    /// Weights ±1 in turn along the axis, which leave it without poles (Berrut, Comput. Math. Appl. 15, 1988); without zero among the
-    /// points ±i does that on both sides of it.
+    /// Weights of alternating sign ±1 along the axis, which give no poles on it (Berrut, Comput. Math. Appl. 15, 1988);
+    /// without the point at zero, the signs alternate separately on both halves of the axis.
     fn alternating(&self, chosen: &[usize]) -> Vec<Complex64> {
         let unit = if chosen.iter().any(|j| self.omegas[*j] == 0.0) { Complex64::from(1.0) } else { Complex64::i() };
         let rank = |j: usize| chosen.iter().filter(|c| **c < j).count();
@@ -318,7 +323,7 @@ mod tests {
 
     #[test]
     fn functions_with_cuts_are_close_between_their_samples() {
-        // cut along the negative real axis, as Theodorsen's function has one
+        // branch cut along the negative real axis, as Theodorsen's function has it
         let cut =
             |s: Complex64| vec![(1.0 + s.sqrt()).inv(), 1.0 + s * (1.0 + s.inv()).ln(), s * s + s / (1.0 + s.sqrt())];
         let found = Rational::of(&sample(&cut, &log_spaced(0.02, 2.0, 8)), 0.0).unwrap();
@@ -350,7 +355,7 @@ mod tests {
         let value = Complex64::new(2.0, 1.0);
         let one = Rational::of(&[(0.5, vec![value])], 0.0).unwrap();
         assert!(one.at(3.0 * i) == [value] && one.at(-i) == [value.conj()] && one.misfit() == 0.0);
-        // one lag is found from two samples, two functions that are no such lag are met as well
+        // two samples determine a single lag; two functions that are not such a lag are reproduced as well
         let lag = |s: Complex64| vec![1.0 + s / (s + 0.3), 2.0 / (s + 0.3)];
         let two = Rational::of(&sample(&lag, &[0.0, 0.4]), 1e-12).unwrap();
         assert!(worst(&two.at(0.1 * i), &lag(0.1 * i)) < 1e-12 && (two.poles()[0] + 0.3).norm() < 1e-12);

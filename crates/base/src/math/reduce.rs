@@ -1,9 +1,9 @@
-//! Sums, norms, largest and first values over rows: the only place where all rows give one number.
+//! Sums, norms, maxima and searches over rows; all reductions of rows to one number are in this file.
 //!
-//! Rows are cut into chunks of [`CHUNK`] consecutive ones, at limits that depend on nothing else. A chunk is summed plainly; the
-//! sums of chunks are added exactly, as whole numbers ([`Accumulator`]), and rounded once. A sum over rows is therefore the same bits in whatever
-//! order, by however many threads and in however many pieces chunks are added. Largest, smallest and first values are exact
-//! as they are.
+//! Rows are divided into chunks of [`CHUNK`] consecutive ones, independently of the number of threads. A chunk is
+//! summed in floating point; the sums of chunks are added exactly in integer arithmetic ([`Accumulator`]) and rounded
+//! once. A sum over rows is therefore identical for any order, number of threads and number of pieces. Maxima, minima
+//! and first indices are exact in any case.
 use std::ops::Range;
 use std::sync::atomic::{AtomicU64, AtomicUsize, Ordering};
 
@@ -13,7 +13,7 @@ use super::parallel::{CHUNK, both, each_chunk, each_piece, sweep_each};
 
 mod accumulator;
 
-/// Chunks that a thread adds before it asks whether another is free.
+/// Number of chunks that a thread adds before it checks whether another thread is free.
 const TOGETHER: usize = 16;
 
 /// Sum of `f(i)` over `0..n`.
@@ -22,7 +22,7 @@ pub fn sum(n: usize, f: impl Fn(usize) -> f64 + Sync) -> f64 {
     sum
 }
 
-/// As many sums over `0..n` at once as `f(i)` has values.
+/// N sums over `0..n` at once, one for each value of `f(i)`.
 pub fn sums<const N: usize>(n: usize, f: impl Fn(usize) -> [f64; N] + Sync) -> [f64; N] {
     of_chunks(n, &|range| {
         let mut sums = [0.0; N];
@@ -34,10 +34,10 @@ pub fn sums<const N: usize>(n: usize, f: impl Fn(usize) -> [f64; N] + Sync) -> [
     })
 }
 
-/// What the chunks of `range` add to the sum of `f(i)` over all rows; the range begins at the limit of a chunk. Pieces that follow one
-/// another give, merged in any order, what [`sum`] gives.
+/// Contribution of the chunks of `range` to the sum of `f(i)` over all rows; the range must begin at the limit of a
+/// chunk. The contributions of consecutive ranges, merged in any order, give the result of [`sum`].
 pub fn partial(range: Range<usize>, f: impl Fn(usize) -> f64 + Sync) -> Accumulator {
-    debug_assert!(range.start.is_multiple_of(CHUNK), "row {} is no limit of a chunk", range.start);
+    debug_assert!(range.start.is_multiple_of(CHUNK), "row {} is not the first row of a chunk", range.start);
     let chunk = |c: usize| [abreast(c * CHUNK..((c + 1) * CHUNK).min(range.end), &f)];
     let mut all = [Accumulator::ZERO];
     accumulate(range.start / CHUNK, range.end.div_ceil(CHUNK), &chunk, &mut all);
@@ -45,10 +45,10 @@ pub fn partial(range: Range<usize>, f: impl Fn(usize) -> f64 + Sync) -> Accumula
     sum
 }
 
-/// Sums of what `chunk` says of the chunks of `0..n`.
+/// Sums of the values of `chunk` over the chunks of `0..n`.
 fn of_chunks<const N: usize>(n: usize, chunk: &(dyn Fn(Range<usize>) -> [f64; N] + Sync)) -> [f64; N] {
     if n <= CHUNK {
-        // the exact sum of one number, which has no negative zero
+        // the exact sum of a single number, which has no negative zero
         return chunk(0..n).map(|x| x + 0.0);
     }
     let of = |c: usize| chunk(c * CHUNK..((c + 1) * CHUNK).min(n));
@@ -75,7 +75,7 @@ fn accumulate<const N: usize>(
     all.iter_mut().zip(&rest).for_each(|(all, rest)| all.merge(rest));
 }
 
-/// Sum of `f(i)` over a range, every eighth term together: additions that need not wait for one another.
+/// Sum of `f(i)` over a range with eight partial sums, so that additions do not wait for one another.
 #[inline(always)]
 pub fn abreast(range: Range<usize>, f: &impl Fn(usize) -> f64) -> f64 {
     let mut sums = [0.0; 8];
@@ -92,7 +92,8 @@ pub fn abreast(range: Range<usize>, f: &impl Fn(usize) -> f64) -> f64 {
     ((a + b) + (c + d)) + ((e + f) + (g + h))
 }
 
-/// As many sums at once as `total` has slots: `f` sets those of a chunk of indices. `chunks` is storage.
+/// Sums for all entries of `total` at once, where `f` sets the contributions of a chunk of indices; `chunks` is working
+/// storage.
 pub fn sum_each(n: usize, total: &mut [f64], chunks: &mut Vec<f64>, f: impl Fn(Range<usize>, &mut [f64]) + Sync) {
     let width = total.len();
     chunks.clear();
@@ -106,11 +107,11 @@ pub fn sum_each(n: usize, total: &mut [f64], chunks: &mut Vec<f64>, f: impl Fn(R
     });
 }
 
-/// The first of `0..n` for which `f` holds.
+/// The first index in `0..n` for which `f` is true; `None` if there is none.
 pub fn first(n: usize, f: impl Fn(usize) -> bool + Sync) -> Option<usize> {
     let found = AtomicUsize::new(usize::MAX);
     each_chunk(0, n.div_ceil(CHUNK), &|c| {
-        // what lies behind one that was found need not be asked
+        // indices after one that was found need no check
         if c * CHUNK < found.load(Ordering::Relaxed)
             && let Some(i) = (c * CHUNK..((c + 1) * CHUNK).min(n)).find(|i| f(*i))
         {
@@ -120,9 +121,9 @@ pub fn first(n: usize, f: impl Fn(usize) -> bool + Sync) -> Option<usize> {
     Some(found.into_inner()).filter(|i| *i < n)
 }
 
-/// Largest of `f(i)` over `0..n`, at least zero; what is no number is passed over.
+/// Maximum of `f(i)` over `0..n`, at least zero; NaN is ignored.
 pub fn maximum(n: usize, f: impl Fn(usize) -> f64 + Sync) -> f64 {
-    // positive numbers are in the order of their bits
+    // positive numbers have the order of their bit patterns
     let largest = AtomicU64::new(0);
     each_chunk(0, n.div_ceil(CHUNK), &|c| {
         let chunk = (c * CHUNK..((c + 1) * CHUNK).min(n)).map(&f).fold(0.0, f64::max);
@@ -133,7 +134,7 @@ pub fn maximum(n: usize, f: impl Fn(usize) -> f64 + Sync) -> f64 {
     f64::from_bits(largest.into_inner())
 }
 
-/// [`maximum`] of |f(i)|, infinite where one of them is no finite number.
+/// Maximum of |f(i)| over `0..n`; infinite if a value is not finite.
 pub fn largest_size(n: usize, f: impl Fn(usize) -> f64 + Sync) -> f64 {
     maximum(n, |i| {
         let size = f(i).abs();
@@ -141,7 +142,7 @@ pub fn largest_size(n: usize, f: impl Fn(usize) -> f64 + Sync) -> f64 {
     })
 }
 
-/// Smallest of `f(i)`, none of which is negative, over `0..n`; infinite where there are none.
+/// Minimum of `f(i)` over `0..n` for values that are not negative; infinite if `n` is zero.
 pub fn minimum(n: usize, f: impl Fn(usize) -> f64 + Sync) -> f64 {
     let smallest = AtomicU64::new(f64::INFINITY.to_bits());
     each_chunk(0, n.div_ceil(CHUNK), &|c| {
@@ -151,19 +152,20 @@ pub fn minimum(n: usize, f: impl Fn(usize) -> f64 + Sync) -> f64 {
     f64::from_bits(smallest.into_inner())
 }
 
-/// The first of `0..n` whose `f(i)`, not negative, is the largest; `None` where all are zero or no numbers.
+/// Index and value of the first maximum of `f(i)` over `0..n`, for values that are not negative; `None` if all are zero
+/// or NaN.
 pub fn largest(n: usize, f: impl Fn(usize) -> f64 + Sync) -> Option<(usize, f64)> {
     let most = maximum(n, &f);
     let found = if most > 0.0 { first(n, |i| f(i) == most) } else { None };
     found.map(|i| (i, most))
 }
 
-/// Inner product of two slices.
+/// Inner product of two slices of equal length.
 pub fn dot(a: &[f64], b: &[f64]) -> f64 {
     sum(a.len(), |i| a[i] * b[i])
 }
 
-/// Euclidean norm.
+/// Euclidean norm of a vector.
 pub fn norm(a: &[f64]) -> f64 {
     dot(a, a).sqrt()
 }

@@ -1,23 +1,23 @@
-//! Finite rotations by a rotation vector θ: by the angle |θ| about the direction of θ, right-handed.
+//! Finite rotations by a rotation vector θ: by the angle |θ| (rad) about the direction of θ, right-handed.
 //!
-//! With s = |θ|² and c_k(s) = Σ_n (−s)ⁿ/(2n + k)! (Stumpff's functions; c₀ = cos|θ|, c₁ = sin|θ|/|θ|), which are smooth through
-//! s = 0, Rodrigues' formula is R x = x + c₁ θ×x + c₂ θ×(θ×x), and the rate of rotation in axes of the body is
-//! ω = T θ', T y = y − c₂ θ×y + c₃ θ×(θ×y) (Géradin and Cardona, Flexible Multibody Dynamics, 2001, chapter 4). T is singular where
-//! |θ| is a whole number of turns but zero: a rotation vector describes less than one turn either way.
+//! With s = |θ|² and Stumpff's functions c_k(s) = Σ_n (−s)ⁿ/(2n + k)! (c₀ = cos|θ|, c₁ = sin|θ|/|θ|), which are smooth
+//! at s = 0, Rodrigues' formula is R x = x + c₁ θ×x + c₂ θ×(θ×x). The angular velocity in body axes is ω = T θ', T y =
+//! y − c₂ θ×y + c₃ θ×(θ×y) (Géradin and Cardona, Flexible Multibody Dynamics, 2001, chapter 4). T is singular if |θ| is
+//! a non-zero multiple of 2π: a rotation vector describes less than one turn in either direction.
 use crate::math::jet::Scalar;
 
-/// s below which the series is summed; beyond, the recurrence c_{k+2} = (1/k! − c_k)/s loses no digits.
+/// Limit of s below which the series is summed; above, the recurrence c_{k+2} = (1/k! − c_k)/s is accurate.
 const SERIES: f64 = 4.0;
-/// Terms of that series: 4^n/(2n)! is below round-off.
+/// Number of terms of that series: 4^n/(2n)! is then below round-off.
 const TERMS: usize = 14;
 
-/// Three numbers.
+/// Three components of a vector.
 pub type Triple<S> = [S; 3];
 
-/// c_k(s) for s not negative.
+/// c_k(s) for s ≥ 0.
 fn stumpff(k: usize, s: f64) -> f64 {
     if s < SERIES {
-        // Horner's scheme from the last term
+        // Horner's scheme, starting from the last term
         let factor = |n: usize| -s / ((2 * n + k) as f64 * (2 * n + k - 1) as f64);
         let sum = (1..=TERMS).rev().fold(1.0, |sum, n| 1.0 + sum * factor(n));
         return sum / factorial(k);
@@ -34,22 +34,22 @@ fn factorial(k: usize) -> f64 {
     (2..=k).fold(1.0, |product, i| product * i as f64)
 }
 
-/// dc_k/ds = (k c_{k+2} − c_{k+1})/2.
+/// Derivative dc_k/ds = (k c_{k+2} − c_{k+1})/2.
 fn slope(k: usize, s: f64) -> f64 {
     0.5 * (k as f64 * stumpff(k + 2, s) - stumpff(k + 1, s))
 }
 
-/// c_k of any scalar.
+/// c_k(s) for any scalar type.
 fn coefficient<S: Scalar>(k: usize, s: S) -> S {
     s.map(|s| [stumpff(k, s), slope(k, s), 0.5 * (k as f64 * slope(k + 2, s) - slope(k + 1, s))])
 }
 
-/// A triple of constants.
+/// A vector of constants, with zero derivatives.
 pub fn constants<S: Scalar>(x: &[f64; 3]) -> Triple<S> {
     x.map(S::constant)
 }
 
-/// a × b.
+/// Cross product a × b.
 pub fn cross<S: Scalar>(a: &Triple<S>, b: &Triple<S>) -> Triple<S> {
     std::array::from_fn(|i| {
         let (j, k) = ((i + 1) % 3, (i + 2) % 3);
@@ -57,47 +57,47 @@ pub fn cross<S: Scalar>(a: &Triple<S>, b: &Triple<S>) -> Triple<S> {
     })
 }
 
-/// a · b.
+/// Inner product a · b.
 pub fn dot<S: Scalar>(a: &Triple<S>, b: &Triple<S>) -> S {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }
 
-/// a + b.
+/// Sum a + b.
 pub fn sum<S: Scalar>(a: &Triple<S>, b: &Triple<S>) -> Triple<S> {
     std::array::from_fn(|i| a[i] + b[i])
 }
 
-/// x + f θ×x + g θ×(θ×x).
+/// The vector x + f θ×x + g θ×(θ×x).
 fn turned<S: Scalar>(theta: &Triple<S>, f: S, g: S, x: &Triple<S>) -> Triple<S> {
     let once = cross(theta, x);
     let twice = cross(theta, &once);
     std::array::from_fn(|i| x[i] + f * once[i] + g * twice[i])
 }
 
-/// R(θ) x.
+/// Rotated vector R(θ) x.
 pub fn rotate<S: Scalar>(theta: &Triple<S>, x: &Triple<S>) -> Triple<S> {
     let s = dot(theta, theta);
     turned(theta, coefficient(1, s), coefficient(2, s), x)
 }
 
-/// R(θ)ᵀ x.
+/// Inverse rotation R(θ)ᵀ x.
 pub fn rotate_back<S: Scalar>(theta: &Triple<S>, x: &Triple<S>) -> Triple<S> {
     rotate(&theta.map(|c| -c), x)
 }
 
-/// ω = T(θ) θ', the rate of rotation in axes of the body for the rate θ'.
+/// Angular velocity ω = T(θ) θ' in body axes for the rate θ'.
 pub fn body_rate<S: Scalar>(theta: &Triple<S>, rate: &Triple<S>) -> Triple<S> {
     let s = dot(theta, theta);
     turned(theta, -coefficient(2, s), coefficient(3, s), rate)
 }
 
-/// T(θ)ᵀ y: a moment in axes of the body as generalised forces of θ.
+/// Generalised forces T(θ)ᵀ y of θ for a moment y in body axes.
 pub fn generalised_moment<S: Scalar>(theta: &Triple<S>, y: &Triple<S>) -> Triple<S> {
     let s = dot(theta, theta);
     turned(theta, coefficient(2, s), coefficient(3, s), y)
 }
 
-/// dω/dt = T θ'' + T' θ', in axes of the body.
+/// Angular acceleration dω/dt = T θ'' + T' θ' in body axes.
 pub fn body_acceleration<S: Scalar>(theta: &Triple<S>, rate: &Triple<S>, second: &Triple<S>) -> Triple<S> {
     let s = dot(theta, theta);
     let s_rate = S::constant(2.0) * dot(theta, rate);
@@ -136,7 +136,7 @@ mod tests {
         }
     }
 
-    /// θ(t), a curve through many rotations.
+    /// A curve θ(t) through many rotations.
     fn curve(t: f64) -> [f64; 3] {
         [t.sin(), 0.3 + 0.8 * t, (0.7 * t).cos() * t]
     }
@@ -170,7 +170,7 @@ mod tests {
             let omega = body_rate(&theta, &first);
             let x = [0.3, -0.5, 0.8];
             let expected = rotate(&theta, &cross(&omega, &x));
-            // along the curve, by a scalar that knows its derivative
+            // derivatives along the curve, by automatic differentiation
             let along: [Jet; 3] = std::array::from_fn(|i| Jet { value: theta[i], first: first[i], second: second[i] });
             let moved = rotate(&along, &constants(&x));
             let change =

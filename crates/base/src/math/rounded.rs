@@ -1,45 +1,46 @@
-//! Blocks of whole numbers of one unit each, stored by columns: those of [`super::block_matrix`] beside the diagonal.
+//! Blocks of integers with one unit for each block, stored by columns: the off-diagonal blocks of
+//! [`super::block_matrix`].
 use super::blocks::array;
 
-/// Numbers that are read at once: a column of a block and what follows it.
+/// Number of values that are read at once: a column of a block and the values that follow.
 pub(super) const LANES: usize = 8;
-/// A column of a block, or what is summed of one; entries beyond the order of the block mean nothing.
+/// A column of a block, or partial sums of one; entries beyond the order of the block are meaningless.
 pub(super) type Lanes = [f32; LANES];
-/// Bytes before the entries of a block: the upper half of its unit.
+/// Number of bytes before the entries of a block: the upper half of its unit in single precision.
 pub(super) const UNIT: usize = 2;
-/// Largest whole number in a block.
+/// Largest integer in a block.
 const LARGEST: f32 = 127.0;
 
-/// Unit of the entries of a block.
+/// Reads the unit of the entries of a block.
 #[inline(always)]
 pub(super) fn unit_of(block: &[u8]) -> f32 {
     of_upper_half(u16::from_le_bytes([block[0], block[1]]))
 }
 
-/// The number whose upper half this is.
+/// The single-precision number with this upper half.
 #[inline(always)]
 pub fn of_upper_half(half: u16) -> f32 {
     f32::from_bits(u32::from(half) << 16)
 }
 
-/// The upper half of a number, rounded.
+/// Upper half of a single-precision number, rounded.
 #[inline(always)]
 pub fn upper_half(x: f32) -> u16 {
     (x.to_bits().wrapping_add(0x8000) >> 16) as u16
 }
 
-/// Writes the numbers of a block, and adds what rounding takes from them to `own`: sums of rows, which rule the slow modes,
-/// then stay exact.
+/// Writes a block and adds its rounding errors to `own`. Row sums, which determine the slow modes, therefore remain
+/// exact.
 #[inline(always)]
 pub(super) fn round_block(sum: &[f32], block: &mut [u8], own: &mut [f32]) {
-    // twelve and a half million: sums with it have no room for fractions
+    // adding this number (1.5 · 2²³) rounds to an integer, because the sum has no bits for fractions
     const WHOLE: f32 = 12_582_912.0;
-    // by their bits, which are in the order of the numbers
+    // compares bit patterns, which have the order of positive numbers
     let (n, mut largest) = (sum.len(), 0);
     for x in sum {
         largest = x.abs().to_bits().max(largest);
     }
-    // half of the bits, rounded up
+    // upper half of the bits, rounded up
     let half = (f32::from_bits(largest) / LARGEST).to_bits().wrapping_add(0xffff) >> 16;
     let unit = f32::from_bits(half << 16);
     let scale = if unit >= f32::MIN_POSITIVE { 1.0 / unit } else { 0.0 };
@@ -52,7 +53,7 @@ pub(super) fn round_block(sum: &[f32], block: &mut [u8], own: &mut [f32]) {
     }
 }
 
-/// sum ← sum + share · B.
+/// Computes sum ← sum + share · B.
 #[inline(always)]
 pub(super) fn add_block<const N: usize>(block: &[u8], share: f32, sum: &mut [f32]) {
     let unit = share * unit_of(block);
@@ -60,7 +61,7 @@ pub(super) fn add_block<const N: usize>(block: &[u8], share: f32, sum: &mut [f32
     sum[..N * N].iter_mut().zip(entries).for_each(|(s, b)| *s += unit * f32::from(*b as i8));
 }
 
-/// The first `N` numbers.
+/// The first `N` values.
 #[inline(always)]
 pub(super) fn leading<const N: usize>(lanes: &Lanes) -> [f32; N] {
     array(|k| lanes[k])
@@ -80,7 +81,7 @@ pub(super) fn load<const N: usize>(x: &[f32], i: usize) -> [f32; N] {
     array(|k| x[k])
 }
 
-/// r ← r − B x.
+/// Computes r ← r − B x.
 #[inline(always)]
 pub(super) fn subtract<const N: usize>(block: &[u8], x: &[f32; N], r: &mut Lanes) {
     let unit = unit_of(block);
@@ -99,14 +100,14 @@ fn column<const N: usize>(block: &[u8], c: usize) -> Lanes {
     array(|k| f32::from(entries[k] as i8))
 }
 
-/// The numbers of a block, by columns.
+/// Entries of a block, by columns.
 #[inline(always)]
 pub(super) fn widen_block<const N: usize>(block: &[u8]) -> [Lanes; N] {
     let unit = unit_of(block);
     array(|c| column::<N>(block, c).map(|b| unit * b))
 }
 
-/// r ← r − B x.
+/// Computes r ← r − B x.
 #[inline(always)]
 pub(super) fn subtract_wide<const N: usize>(block: &[Lanes; N], x: &[f32], r: &mut Lanes) {
     let x = &x[..N];
@@ -117,7 +118,7 @@ pub(super) fn subtract_wide<const N: usize>(block: &[Lanes; N], x: &[f32], r: &m
     }
 }
 
-/// r ← r + B x for a block stored by columns.
+/// Computes r ← r + B x for a block stored by columns.
 #[inline(always)]
 pub(super) fn multiply<const N: usize>(block: &[f32], x: &[f32; N], r: &mut [f32; N]) {
     let block = &block[..N * N];

@@ -1,24 +1,24 @@
 //! Singular values and vectors of small matrices by one-sided Jacobi rotations.
 //!
-//! A V = U Σ: rotations of pairs of columns of A, gathered in V, go on until the columns stand at right angles (Demmel 1997, section
-//! 5.4.3; Hestenes 1958). Small singular values come out as exact as large ones.
+//! A V = U Σ: pairs of columns of A are rotated until all columns are orthogonal; V collects the rotations (Demmel
+//! 1997, section 5.4.3; Hestenes 1958). Small singular values are as accurate as large ones.
 
-/// Sweeps over all pairs of columns after which no matrix is left to converge: convergence is quadratic.
+/// Maximum number of sweeps over all pairs of columns; convergence is quadratic, so that fewer suffice.
 const SWEEPS: usize = 30;
-/// Cosine of the angle between two columns below which they stand at right angles: round-off.
+/// Cosine of the angle between two columns below which they are regarded as orthogonal: round-off.
 const RIGHT_ANGLE: f64 = 1e-15;
 
-/// A V = U Σ, column by column, in no order.
+/// The decomposition A V = U Σ, column by column, in no particular order.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Singular {
-    /// Columns of U Σ: their lengths are the singular values.
+    /// Columns of U Σ, whose norms are the singular values.
     pub left: Vec<Vec<f64>>,
     /// Columns of V.
     pub right: Vec<Vec<f64>>,
 }
 
 impl Singular {
-    /// That of the matrix with these columns.
+    /// Decomposes the matrix with these columns.
     pub fn of(columns: Vec<Vec<f64>>) -> Self {
         let n = columns.len();
         let unit = |c: usize| (0..n).map(|k| if k == c { 1.0 } else { 0.0 }).collect();
@@ -40,7 +40,7 @@ impl Singular {
         self.left.iter().map(|column| inner(column, column)).collect()
     }
 
-    /// Puts columns `p` and `q` at right angles; false when they are.
+    /// Makes columns `p` and `q` orthogonal; false if they already are.
     fn rotate(&mut self, p: usize, q: usize) -> bool {
         let u = &self.left;
         let (a, b, c) = (inner(&u[p], &u[p]), inner(&u[q], &u[q]), inner(&u[p], &u[q]));

@@ -1,34 +1,35 @@
-//! Where a plane across an axis cuts triangles: chains of points on their sides.
+//! Intersection of triangles with a plane normal to an axis, as chains of points on triangle edges.
 //!
-//! A corner on the plane counts as above it. Each triangle that the plane passes through gives a piece from one of its sides to
-//! another, with what is above on its left; pieces meet on the sides that triangles share, and follow one another in chains.
+//! A corner on the plane counts as above it. Each intersected triangle gives a segment between two of its edges, with
+//! the part above the plane on its left. Segments meet at shared edges and are joined to chains.
 use std::collections::BTreeMap;
 
 use super::Vector;
 
-/// A point on the side between two corners, the part `part` of the way from the first to the second.
+/// A point on the edge between two corners, at the fraction `part` from the first to the second.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct OnSide {
-    /// The corners, that of the smaller number first.
+    /// Indices of the corners, the smaller one first.
     pub corners: [u32; 2],
-    /// 0 at the first, 1 at the second.
+    /// Fraction of the edge: 0 at the first corner, 1 at the second.
     pub part: f64,
 }
 
 impl OnSide {
-    /// What linear interpolation between the corners gives.
+    /// Linear interpolation between the values `of` at the corners.
     pub fn value(&self, of: impl Fn(u32) -> f64) -> f64 {
         let [a, b] = self.corners;
         of(a) * (1.0 - self.part) + of(b) * self.part
     }
 
-    /// The point itself.
+    /// Position of the point.
     pub fn point<const D: usize>(&self, points: &[Vector<D>]) -> Vector<D> {
         Vector::from_fn(|d| self.value(|i| points[i as usize][d]))
     }
 }
 
-/// Chains of points where the plane x_axis = `at` cuts the triangles; a closed chain ends where it begins.
+/// Chains of points in which the plane x_axis = `at` intersects the triangles; the last point of a closed chain equals
+/// the first.
 pub fn slice<const D: usize>(points: &[Vector<D>], triangles: &[[u32; 3]], axis: usize, at: f64) -> Vec<Vec<OnSide>> {
     let height = |i: u32| points[i as usize][axis] - at;
     let on = |a: u32, b: u32| {
@@ -48,7 +49,7 @@ pub fn slice<const D: usize>(points: &[Vector<D>], triangles: &[[u32; 3]], axis:
     chained(&pieces)
 }
 
-/// Pieces that follow one another, joined.
+/// Joins segments that follow one another.
 fn chained(pieces: &[[OnSide; 2]]) -> Vec<Vec<OnSide>> {
     let from: BTreeMap<[u32; 2], usize> = pieces.iter().enumerate().map(|(k, [a, _])| (a.corners, k)).collect();
     let follower = |k: usize| from.get(&pieces[k][1].corners).copied();
@@ -56,7 +57,7 @@ fn chained(pieces: &[[OnSide; 2]]) -> Vec<Vec<OnSide>> {
     (0..pieces.len()).filter_map(follower).for_each(|k| led[k] = true);
     let mut used = vec![false; pieces.len()];
     let mut chains = Vec::new();
-    // open chains begin with a piece that follows none, what is left closes on itself
+    // open chains start with a segment without predecessor; the remaining segments form closed chains
     for start in (0..pieces.len()).filter(|k| !led[*k]).chain(0..pieces.len()) {
         let (mut chain, mut at) = (Vec::new(), Some(start).filter(|k| !used[*k]));
         while let Some(k) = at.filter(|k| !used[*k]) {
@@ -88,11 +89,11 @@ mod tests {
         assert_eq!((chains[0].len(), chains[0][0]), (5, chains[0][4]));
         let around: f64 = chains[0].windows(2).map(|w| (w[1].point(&points) - w[0].point(&points)).norm()).sum();
         assert!((around - 2.0 * 2.0_f64.sqrt()).abs() < 1e-12, "{around}");
-        // through its corners: the belt counts as above
+        // a plane through corners: these count as above
         let belt = slice(&points, &triangles, 2, 0.0);
         assert_eq!((belt.len(), belt[0].len()), (1, 5));
         assert!(slice(&points, &triangles, 2, 1.5).is_empty());
-        // without one triangle the chain is open
+        // without one triangle, the chain is open
         assert_eq!(slice(&points, &triangles[2..], 2, 0.5)[0].len(), 4);
     }
 }

@@ -1,7 +1,7 @@
 //! Small square matrices.
 use super::types::Vector;
 
-/// Entry (r, c) of the cofactors of the matrix of order D ≤ 3 with entries `at`.
+/// Cofactor (r, c) of the matrix of order D ≤ 3 with the entries `at`.
 #[inline(always)]
 pub fn cofactor<const D: usize>(at: impl Fn(usize, usize) -> f64, r: usize, c: usize) -> f64 {
     let at = |i: usize, j: usize| at((r + i) % D, (c + j) % D);
@@ -12,13 +12,13 @@ pub fn cofactor<const D: usize>(at: impl Fn(usize, usize) -> f64, r: usize, c: u
     }
 }
 
-/// Rows of cof F, the derivatives of det F by the entries of F, for the rows of F.
+/// Rows of the cofactor matrix cof F, the derivative of det F with respect to F, from the rows of F.
 #[inline(always)]
 pub fn cofactors<const D: usize>(f: &[Vector<D>; D]) -> [Vector<D>; D] {
     std::array::from_fn(|r| Vector::from_fn(|c| cofactor::<D>(|i, j| f[i][j], r, c)))
 }
 
-/// det F.
+/// Determinant of F from its rows.
 #[inline(always)]
 pub fn determinant<const D: usize>(f: &[Vector<D>; D]) -> f64 {
     (0..D).map(|c| f[0][c] * cofactor::<D>(|i, j| f[i][j], 0, c)).sum()
@@ -28,15 +28,15 @@ pub fn determinant<const D: usize>(f: &[Vector<D>; D]) -> f64 {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Symmetric<const D: usize> {
     diagonal: [f64; D],
-    /// The entries (0, 1), (0, 2) and (1, 2), as far as there are such.
+    /// The off-diagonal entries (0, 1), (0, 2) and (1, 2); in 2-D only the first.
     beside: [f64; D],
 }
 
 impl<const D: usize> Symmetric<D> {
-    /// No entry but zeros.
+    /// The zero matrix.
     pub const ZERO: Self = Self { diagonal: [0.0; D], beside: [0.0; D] };
 
-    /// The one with the upper triangle of `full`.
+    /// The symmetric matrix with the upper triangle of `full`.
     #[inline(always)]
     pub fn of(full: &[[f64; D]; D]) -> Self {
         let mut m = Self::ZERO;
@@ -47,7 +47,7 @@ impl<const D: usize> Symmetric<D> {
         m
     }
 
-    /// All entries.
+    /// All entries, row by row.
     #[inline(always)]
     pub fn full(&self) -> [[f64; D]; D] {
         let mut full = [[0.0; D]; D];
@@ -60,7 +60,7 @@ impl<const D: usize> Symmetric<D> {
         full
     }
 
-    /// Adds a bᵀ, of two vectors of one direction.
+    /// Adds a bᵀ for two parallel vectors.
     #[inline(always)]
     pub fn add_product(&mut self, a: &Vector<D>, b: &Vector<D>) {
         for r in 0..D {
@@ -70,7 +70,7 @@ impl<const D: usize> Symmetric<D> {
     }
 }
 
-/// F v.
+/// Product F v.
 #[inline(always)]
 pub fn times<const D: usize>(f: &[Vector<D>; D], v: &Vector<D>) -> Vector<D> {
     Vector::from_fn(|r| f[r].dot(v))

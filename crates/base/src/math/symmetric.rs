@@ -1,13 +1,13 @@
-//! Full symmetric matrices, rows one after another: Cholesky's factor, eigenvalues and vectors.
+//! Dense symmetric matrices, stored row by row: Cholesky factorisation, eigenvalues and eigenvectors.
 //!
-//! Reflections leave entries beside the diagonal alone, and QR steps clear these. A x = λ B x with B = G Gᵀ has the eigenvalues of
-//! G⁻¹ A G⁻ᵀ (Golub and Van Loan, 4th edition, sections 4.2, 8.3 and 8.7).
+//! Householder reflections reduce the matrix to tridiagonal form, and QR steps make it diagonal. A x = λ B x with B = G
+//! Gᵀ has the eigenvalues of G⁻¹ A G⁻ᵀ (Golub and Van Loan, 4th edition, sections 4.2, 8.3 and 8.7).
 use super::reduce::abreast;
 
-/// Steps for one eigenvalue after which there is none: two are usual.
+/// Maximum number of steps for one eigenvalue; two are usual.
 const STEPS: usize = 60;
 
-/// Lower triangle G of A = G Gᵀ; `None` when A is not positive definite.
+/// Lower triangle G of A = G Gᵀ; `None` if A is not positive definite.
 pub fn cholesky(matrix: &[f64], n: usize) -> Option<Vec<f64>> {
     let mut factor = vec![0.0; n * n];
     for i in 0..n {
@@ -23,26 +23,26 @@ pub fn cholesky(matrix: &[f64], n: usize) -> Option<Vec<f64>> {
     Some(factor)
 }
 
-/// Eigenvalues of a symmetric matrix, rising, and unit vectors.
+/// Eigenvalues of a symmetric matrix in ascending order, with unit eigenvectors.
 #[derive(Clone, Debug)]
 pub struct Eigen {
-    /// Eigenvalues.
+    /// Eigenvalues in ascending order.
     pub values: Vec<f64>,
-    /// The vector of each eigenvalue.
+    /// Eigenvector of each eigenvalue.
     pub vectors: Vec<Vec<f64>>,
 }
 
-/// Eigenvalues of the symmetric matrix A, rising; not numbers where A is not finite.
+/// Eigenvalues of the symmetric matrix A in ascending order; NaN if A is not finite.
 pub fn eigenvalues(matrix: &[f64], n: usize) -> Vec<f64> {
     eigen(matrix, n).map_or_else(|| vec![f64::NAN; n], |found| found.values)
 }
 
-/// Eigenvalues and vectors of the symmetric matrix A; `None` when it is not finite.
+/// Eigenvalues and eigenvectors of the symmetric matrix A; `None` if it is not finite.
 pub fn eigen(matrix: &[f64], n: usize) -> Option<Eigen> {
     if !matrix.iter().all(|x| x.is_finite()) {
         return None;
     }
-    // rows in falling order of their size, so that small eigenvalues of a graded matrix keep their digits
+    // rows in descending order of their norm, so that small eigenvalues of a graded matrix remain accurate
     let mut order: Vec<usize> = (0..n).collect();
     order.sort_by(|i, j| matrix[j * n + j].abs().total_cmp(&matrix[i * n + i].abs()));
     let sorted = (0..n * n).map(|k| matrix[order[k / n] * n + order[k % n]]).collect();
@@ -59,7 +59,7 @@ pub fn eigen(matrix: &[f64], n: usize) -> Option<Eigen> {
     Some(Eigen { values, vectors })
 }
 
-/// T = Qᵀ A Q with entries beside the diagonal alone, and the rows of Qᵀ.
+/// Tridiagonal matrix T = Qᵀ A Q, and the rows of Qᵀ.
 struct Tridiagonal {
     diagonal: Vec<f64>,
     beside: Vec<f64>,
@@ -67,7 +67,8 @@ struct Tridiagonal {
 }
 
 impl Tridiagonal {
-    /// By Householder's reflections (Golub and Van Loan, 4th edition, algorithm 8.3.1); `a` holds the rows of A.
+    /// Tridiagonalisation by Householder reflections (Golub and Van Loan, 4th edition, algorithm 8.3.1); `a` holds the
+    /// rows of A.
     fn of(mut a: Vec<f64>, n: usize) -> Self {
         let mut beside = vec![0.0; n.saturating_sub(1)];
         let mut reflections = Vec::new();
@@ -91,7 +92,7 @@ impl Tridiagonal {
         }
         let unit = |k: usize| (0..n).map(|j| if j == k { 1.0 } else { 0.0 }).collect();
         let mut rows: Vec<Vec<f64>> = (0..n).map(unit).collect();
-        // row k of Qᵀ is Q e_k, and the last reflections leave the first rows alone
+        // row k of Qᵀ is Q e_k, and the last reflections do not change the first rows
         for (from, beta, v) in reflections.iter().rev() {
             for row in &mut rows[*from..] {
                 let part = beta * abreast(0..v.len(), &|i| v[i] * row[from + i]);
@@ -101,7 +102,8 @@ impl Tridiagonal {
         Self { diagonal: (0..n).map(|k| a[k * n + k]).collect(), beside, rows }
     }
 
-    /// Implicit symmetric steps of QR with Wilkinson's shift (the same, algorithms 8.3.2 and 8.3.3).
+    /// Implicit symmetric QR steps with Wilkinson's shift (Golub and Van Loan, 4th edition, algorithms 8.3.2 and
+    /// 8.3.3).
     fn diagonalise(&mut self) -> Option<()> {
         let size = self.diagonal.iter().chain(&self.beside).fold(0.0f64, |m, x| m.max(x.abs()));
         let negligible = (f64::EPSILON * f64::EPSILON * size).powi(2);
@@ -151,7 +153,7 @@ impl Tridiagonal {
     }
 }
 
-/// A ← H A H with H = 1 − β v vᵀ, for the rows and columns of A from `from` on; `rows` begins with that row.
+/// Computes A ← H A H with H = 1 − β v vᵀ for the rows and columns of A from `from` on; `rows` begins with that row.
 fn reflect(rows: &mut [f64], (n, from): (usize, usize), v: &[f64], beta: f64) {
     let mut w = vec![0.0; v.len()];
     for (row, v) in rows.chunks_exact(n).zip(v) {
@@ -165,18 +167,18 @@ fn reflect(rows: &mut [f64], (n, from): (usize, usize), v: &[f64], beta: f64) {
     }
 }
 
-/// Eigenvalues λ of A x = λ B x, rising, for a positive definite B; none when it is not.
+/// Eigenvalues λ of A x = λ B x in ascending order, for a positive definite B; empty if it is not.
 pub fn generalised_eigenvalues(a: &[f64], b: &[f64], n: usize) -> Vec<f64> {
     let Some(factor) = cholesky(b, n) else { return Vec::new() };
     let half = forward(&factor, a, n);
     let turned: Vec<f64> = (0..n * n).map(|k| half[k % n * n + k / n]).collect();
     let full = forward(&factor, &turned, n);
-    // round-off leaves it symmetric to the last digits only
+    // the matrix is symmetric only up to round-off
     let even: Vec<f64> = (0..n * n).map(|k| 0.5 * (full[k] + full[k % n * n + k / n])).collect();
     eigenvalues(&even, n)
 }
 
-/// G⁻¹ A for the lower triangle G.
+/// Product G⁻¹ A for the lower triangle G.
 fn forward(factor: &[f64], a: &[f64], n: usize) -> Vec<f64> {
     let mut x = a.to_vec();
     for i in 0..n {
@@ -205,7 +207,7 @@ mod tests {
             (1..=n).map(|k| 4.0 * (k as f64 * std::f64::consts::PI / (2 * n + 2) as f64).sin().powi(2)).collect();
         let found = eigenvalues(&chain, n);
         assert!(found.iter().zip(&exact).all(|(a, b)| (a - b).abs() < 1e-13), "{found:?}");
-        // against itself every number is one, and its factor gives it back
+        // with A = B all eigenvalues are one, and B follows from its Cholesky factor
         assert!(generalised_eigenvalues(&chain, &chain, n).iter().all(|x| (x - 1.0).abs() < 1e-13));
         let g = cholesky(&chain, n).unwrap();
         let back = |k: usize| (0..n).map(|j| g[k / n * n + j] * g[k % n * n + j]).sum::<f64>();

@@ -1,35 +1,36 @@
-//! Tetrahedra between points of space.
+//! Tetrahedralisation of points in space.
 //!
-//! A Delaunay tetrahedralisation by insertion (Bowyer 1981, doi:10.1093/comjnl/24.2.162; Watson 1981,
-//! doi:10.1093/comjnl/24.2.167) with exact predicates. Points of a lattice lie on common spheres, which makes exact predicates slow
-//! and tetrahedra flat: every point is moved by a millionth of its spacing first, always the same way, and what is flat
-//! nevertheless is left out.
+//! A Delaunay tetrahedralisation by incremental insertion (Bowyer 1981, doi:10.1093/comjnl/24.2.162; Watson 1981,
+//! doi:10.1093/comjnl/24.2.167) with exact predicates. Points of a lattice lie on common spheres, which makes exact
+//! predicates slow and tetrahedra flat. Every point is therefore first moved by at most a millionth of its
+//! spacing, by reproducible random numbers, and tetrahedra that are still flat are omitted.
 use simple_delaunay_lib::delaunay_3d::delaunay_struct_3d::DelaunayStructure3D;
 use simple_delaunay_lib::delaunay_3d::simplicial_struct_3d::Node;
 
 use super::Vector;
 use super::rotation::cross;
 
-/// Part of its spacing by which a point is moved at most.
+/// Maximum displacement of a point, relative to its spacing.
 const MOVED: f64 = 1e-6;
-/// Six volumes over the cube of the longest side below which a tetrahedron is flat.
+/// Ratio of six volumes to the cube of the longest edge below which a tetrahedron is regarded as flat.
 const FLAT: f64 = 1e-4;
-/// Cosine of the angle between the normal at a point of a surface and the way to a corner beyond which that is behind the surface.
+/// Cosine of the angle between the normal at a surface point and the direction to a corner, below which the corner is
+/// behind the surface.
 const BEHIND: f64 = -0.5;
 
-/// Most points between which there are tetrahedra to look at: beyond, they take more memory than the solver.
+/// Maximum number of points that are tetrahedralised: more would need more memory than the solver.
 pub const MOST: usize = 1_000_000;
 
-/// Tetrahedra between `points`, which are `spacing` apart; the last corner is on the left of the first three, so that volumes are
-/// positive. None where there are fewer than four points or a coordinate is not a number.
+/// Tetrahedra between `points` with the given `spacing`, oriented so that volumes are positive. Empty if there are
+/// fewer than four points or a coordinate is not finite.
 pub fn tetrahedralise(points: &[Vector<3>], spacing: &[f64]) -> Vec<[u32; 4]> {
     let mut all = delaunay(points, spacing);
     all.retain(|corners| !is_flat(points, corners));
     all
 }
 
-/// The same without tetrahedra on the outer side of a surface or through it: `normal` is that of a point on it, pointing inwards, and
-/// `None` for all others.
+/// Tetrahedra as by [`tetrahedralise`], without those outside a surface or through it: `normal` is the unit normal of a
+/// surface point, pointing inwards, and `None` for all other points.
 pub fn tetrahedralise_within(
     points: &[Vector<3>],
     spacing: &[f64],
@@ -51,7 +52,8 @@ pub fn tetrahedralise_within(
     all
 }
 
-/// The same as [`tetrahedralise`] with all that are flat, so that every face inside the hull of the points belongs to two of them.
+/// Tetrahedra as by [`tetrahedralise`], including flat ones, so that every face inside the convex hull belongs to two
+/// of them.
 pub fn delaunay(points: &[Vector<3>], spacing: &[f64]) -> Vec<[u32; 4]> {
     let moved = moved(points, spacing);
     if points.len() < 4 || !moved.iter().flatten().all(|x| x.is_finite()) {
@@ -76,7 +78,7 @@ pub fn delaunay(points: &[Vector<3>], spacing: &[f64]) -> Vec<[u32; 4]> {
 }
 
 fn moved(points: &[Vector<3>], spacing: &[f64]) -> Vec<[f64; 3]> {
-    // a generator of Marsaglia (2003, doi:10.18637/jss.v008.i14): any numbers without a pattern would do
+    // random numbers by Marsaglia (2003, doi:10.18637/jss.v008.i14); any sequence without a pattern would do
     let mut seed = 0x9e37_79b9_7f4a_7c15_u64;
     let mut part = || {
         seed ^= seed << 13;

@@ -1,16 +1,16 @@
-//! Triangles between points of the plane.
+//! Triangulation of points in the plane.
 //!
-//! A constrained Delaunay triangulation: no point lies inside the circle around a triangle unless a given edge stands between
-//! them (Chew 1989, doi:10.1007/BF01553881). It covers the convex hull of the points; the predicates are exact, so that points
-//! in rows and columns do no harm.
+//! A constrained Delaunay triangulation: no point lies inside the circumcircle of a triangle unless a given edge
+//! separates them (Chew 1989, doi:10.1007/BF01553881). It covers the convex hull of the points. The predicates are
+//! exact, so that points in rows and columns are no problem.
 use spade::{ConstrainedDelaunayTriangulation, HasPosition, Point2, Triangulation};
 
 use super::Vector;
 
-/// Coordinates below this are zero: the exact predicates cannot multiply them.
+/// Magnitude below which a coordinate is set to zero, because the exact predicates cannot multiply it.
 const NEXT_TO_NOTHING: f64 = 1e-40;
 
-/// A point that remembers its number.
+/// A point with its index.
 struct Numbered {
     position: Point2<f64>,
     number: u32,
@@ -24,9 +24,11 @@ impl HasPosition for Numbered {
     }
 }
 
-/// Triangles, counterclockwise, between `points`; every one of `edges` is a side of triangles unless it crosses another.
+/// Counterclockwise triangles between `points`; every one of `edges` is an edge of triangles unless it crosses another
+/// one.
 ///
-/// Of points in one place only one is a corner. There is no triangle where a coordinate is not a number.
+/// Of several points at the same position, only one becomes a corner. The result is empty if a coordinate is not
+/// finite.
 pub fn triangulate(points: &[Vector<2>], edges: &[[u32; 2]]) -> Vec<[u32; 3]> {
     let coordinate = |x: f64| if x.abs() < NEXT_TO_NOTHING { 0.0 } else { x };
     let numbered = points
@@ -41,8 +43,8 @@ pub fn triangulate(points: &[Vector<2>], edges: &[[u32; 2]]) -> Vec<[u32; 3]> {
     built.map_or_else(|_| Vec::new(), corners)
 }
 
-/// The same without triangles on the outer side of `edges`, which bound what is to be covered: `normal` is that of a point on them,
-/// pointing inwards, and `None` for all others.
+/// Triangles as by [`triangulate`], without those outside the boundary `edges`: `normal` is the normal of a boundary
+/// point, pointing inwards, and `None` for all other points.
 pub fn triangulate_within(
     points: &[Vector<2>],
     edges: &[[u32; 2]],
@@ -81,7 +83,7 @@ mod tests {
 
     #[test]
     fn what_edges_bound_is_covered_and_no_more() {
-        // an L of three squares; the notch at the upper right is outside
+        // an L-shape of three squares; the notch at the upper right is outside
         let at = [[0, 0], [1, 0], [2, 0], [2, 1], [1, 1], [1, 2], [0, 2], [0, 1]];
         let points = at.map(|[x, y]| Vector([f64::from(x), f64::from(y)]));
         let edges: Vec<[u32; 2]> = (0..8).map(|k| [k, (k + 1) % 8]).collect();
@@ -94,7 +96,7 @@ mod tests {
 
     #[test]
     fn a_given_edge_is_a_side_and_a_crossing_one_is_left_out() {
-        // without the edge, the short diagonal from above to below would be chosen
+        // without the edge, the short vertical diagonal would be chosen
         let points = [[-1.0, 0.0], [1.0, 0.0], [0.0, 0.1], [0.0, -0.1]].map(Vector);
         let side = |triangles: &[[u32; 3]], a, b| triangles.iter().filter(|t| t.contains(&a) && t.contains(&b)).count();
         assert_eq!(side(&triangulate(&points, &[]), 2, 3), 2);

@@ -1,4 +1,4 @@
-//! Small fixed-size vectors: the only place where abbreviations of coordinates are allowed.
+//! Small fixed-size vectors and boxes; abbreviations of coordinates are allowed only here.
 use std::array::from_fn;
 use std::fmt;
 use std::ops::{Add, AddAssign, Index, IndexMut, Mul, Neg, Sub, SubAssign};
@@ -6,7 +6,7 @@ use std::ops::{Add, AddAssign, Index, IndexMut, Mul, Neg, Sub, SubAssign};
 use super::digits::short;
 use super::jet::Scalar;
 
-/// A point or a direction in `D` dimensions, of plain numbers or of numbers that carry derivatives.
+/// A point or a direction in `D` dimensions, of real numbers or of numbers with derivatives.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[repr(transparent)]
 pub struct Vector<const D: usize, S = f64>(pub [S; D]);
@@ -21,20 +21,20 @@ impl<const D: usize> Vector<D> {
         Self::from_fn(|d| if d == axis { 1.0 } else { 0.0 })
     }
 
-    /// The vector of length one along this one; the zero vector stays zero.
+    /// The unit vector in this direction; the zero vector stays zero.
     #[inline]
     pub fn unit(&self) -> Self {
         let n = self.norm();
         if n > 0.0 { *self * (1.0 / n) } else { *self }
     }
 
-    /// Component-wise minimum.
+    /// Component-wise minimum of two vectors.
     #[inline]
     pub fn min(&self, other: &Self) -> Self {
         Self::from_fn(|d| self.0[d].min(other.0[d]))
     }
 
-    /// Component-wise maximum.
+    /// Component-wise maximum of two vectors.
     #[inline]
     pub fn max(&self, other: &Self) -> Self {
         Self::from_fn(|d| self.0[d].max(other.0[d]))
@@ -46,19 +46,19 @@ impl<const D: usize> Vector<D> {
         self.0.iter().fold(0.0, |m, c| m.max(c.abs()))
     }
 
-    /// True when no component is infinite or NaN.
+    /// True if no component is infinite or NaN.
     pub fn is_finite(&self) -> bool {
         self.0.iter().all(|c| c.is_finite())
     }
 
-    /// The same point in three dimensions; missing coordinates are zero.
+    /// The point in three dimensions; missing coordinates are zero.
     pub fn to_3d(&self) -> [f64; 3] {
         from_fn(|d| if d < D { self.0[d] } else { 0.0 })
     }
 }
 
 impl<const D: usize> fmt::Display for Vector<D> {
-    /// `(0.512, 0.031)`, with six digits: a place for people to look at.
+    /// Writes the coordinates for messages, such as `(0.512, 0.031)`, with six digits.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "({})", self.0.map(short).join(", "))
     }
@@ -68,7 +68,7 @@ impl<const D: usize, S: Scalar> Vector<D, S> {
     /// The vector whose component `d` is `f(d)`.
     #[inline(always)]
     pub fn from_fn(mut f: impl FnMut(usize) -> S) -> Self {
-        // a plain loop: the compiler does not always look through array::from_fn in large kernels, and has less to translate
+        // a plain loop: the compiler does not always inline array::from_fn in large kernels
         let mut v = [S::constant(0.0); D];
         let mut d = 0;
         while d < D {
@@ -90,7 +90,7 @@ impl<const D: usize, S: Scalar> Vector<D, S> {
         Self([value; D])
     }
 
-    /// Inner product.
+    /// Inner product with another vector.
     #[inline(always)]
     pub fn dot(&self, other: &Self) -> S {
         let mut sum = self.0[0] * other.0[0];
@@ -100,7 +100,7 @@ impl<const D: usize, S: Scalar> Vector<D, S> {
         sum
     }
 
-    /// Inner product with plain numbers.
+    /// Inner product with a vector of real numbers.
     #[inline(always)]
     pub fn along(&self, other: &Vector<D>) -> S {
         let mut sum = self.0[0] * other.0[0];
@@ -110,19 +110,19 @@ impl<const D: usize, S: Scalar> Vector<D, S> {
         sum
     }
 
-    /// A vector of constants.
+    /// A vector of constants, with zero derivatives.
     #[inline(always)]
     pub fn constant(v: &Vector<D>) -> Self {
         Self::from_fn(|d| S::constant(v.0[d]))
     }
 
-    /// The values.
+    /// The values without derivatives.
     #[inline(always)]
     pub fn value(&self) -> Vector<D> {
         Vector::from_fn(|d| self.0[d].value())
     }
 
-    /// Euclidean length.
+    /// Euclidean length of the vector.
     #[inline(always)]
     pub fn norm(&self) -> S {
         self.norm_squared().sqrt()
@@ -134,7 +134,7 @@ impl<const D: usize, S: Scalar> Vector<D, S> {
         self.dot(self)
     }
 
-    /// The vector times a plain number.
+    /// The product with a real number.
     #[inline(always)]
     pub fn times(&self, factor: f64) -> Self {
         Self::from_fn(|d| self.0[d] * factor)
@@ -209,7 +209,7 @@ pub struct Bounds<const D: usize> {
 }
 
 impl<const D: usize> Bounds<D> {
-    /// The box that contains nothing: growing it by a point gives that point.
+    /// The empty box: growing it by a point gives that point.
     pub const EMPTY: Self = Self { min: Vector([f64::INFINITY; D]), max: Vector([f64::NEG_INFINITY; D]) };
 
     /// The smallest box around `points`.
@@ -232,12 +232,12 @@ impl<const D: usize> Bounds<D> {
         Self { min: self.min - Vector::splat(margin), max: self.max + Vector::splat(margin) }
     }
 
-    /// True when `x` lies inside or on the border.
+    /// True if `x` lies inside or on the boundary.
     pub fn contains(&self, x: &Vector<D>) -> bool {
         (0..D).all(|d| self.min[d] <= x[d] && x[d] <= self.max[d])
     }
 
-    /// True when both boxes have a point in common, or are no more than `margin` apart along any axis.
+    /// True if the boxes intersect, or are no more than `margin` apart along any axis.
     pub fn meets(&self, other: &Self, margin: f64) -> bool {
         (0..D).all(|d| self.min[d] - margin <= other.max[d] && other.min[d] - margin <= self.max[d])
     }

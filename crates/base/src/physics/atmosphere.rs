@@ -1,13 +1,14 @@
-//! The standard atmosphere: temperature, pressure and density of air over the altitude.
+//! The standard atmosphere: temperature, pressure and density of air as functions of altitude.
 //!
-//! In layers of geopotential altitude H the molecular-scale temperature is linear, T = T_b + L (H − H_b), and hydrostatic balance gives
+//! In layers of geopotential altitude H, the molecular-scale temperature is linear, T = T_b + L (H − H_b), and
+//! hydrostatic balance gives
 //!
 //! p = p_b (T_b/T)^{g₀/(R L)}, or p_b exp(−g₀ (H − H_b)/(R T_b)) where L = 0, ρ = p/(R T), a = √(γ R T),
 //!
-//! with H = r₀ z/(r₀ + z) of the geometric altitude z (U.S. Standard Atmosphere, 1976, NOAA-S/T 76-1562; the same as that of ISO 2533 and
-//! ICAO up to 32 km). Range: 5 km below to 86 km above the sea.
+//! with H = r₀ z/(r₀ + z) for the geometric altitude z (U.S. Standard Atmosphere, 1976, NOAA-S/T 76-1562; up to 32 km
+//! it equals those of ISO 2533 and ICAO). Range: from 5 km below to 86 km above sea level.
 
-/// Altitudes, geopotential, at which layers begin, m, and the slopes of the temperature above, K/m.
+/// Geopotential altitude of the base of each layer (m), and temperature gradient in the layer [K/m].
 const LAYERS: [(f64, f64); 7] = [
     (0.0, -6.5e-3),
     (11_000.0, 0.0),
@@ -17,33 +18,33 @@ const LAYERS: [(f64, f64); 7] = [
     (51_000.0, -2.8e-3),
     (71_000.0, -2e-3),
 ];
-/// Temperature, K, and pressure, Pa, at the sea.
+/// Temperature (K) and pressure (Pa) at sea level.
 const SEA: (f64, f64) = (288.15, 101_325.0);
-/// Standard gravity, m/s².
+/// Standard gravity [m/s²].
 const GRAVITY: f64 = 9.806_65;
-/// Gas constant of air, J/(kg K): 8314.32/28.9644.
+/// Specific gas constant of air [J/(kg K)]: 8314.32/28.9644.
 pub const GAS_CONSTANT: f64 = 8314.32 / 28.9644;
-/// Ratio of specific heats.
+/// Ratio of specific heats of air.
 pub const GAMMA: f64 = 1.4;
-/// Radius of the earth, m, of the geopotential.
+/// Radius of the earth in the definition of the geopotential altitude (m).
 const RADIUS: f64 = 6_356_766.0;
-/// Geometric altitudes, m, between which the standard holds here.
+/// Range of geometric altitudes of this model (m).
 pub const RANGE: [f64; 2] = [-5_000.0, 86_000.0];
 
-/// Air at an altitude.
+/// State of the air at an altitude.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Air {
-    /// Temperature, K; above 80 km that which goes with the mean molecular mass at the sea.
+    /// Temperature (K); above 80 km the molecular-scale temperature, for the mean molecular mass at sea level.
     pub temperature: f64,
-    /// Pressure, Pa.
+    /// Pressure (Pa).
     pub pressure: f64,
-    /// Density, kg/m³.
+    /// Density [kg/m³].
     pub density: f64,
-    /// Sound speed, m/s.
+    /// Speed of sound [m/s].
     pub sound_speed: f64,
 }
 
-/// A layer and the air at its lower end.
+/// A layer with the state of the air at its base.
 #[derive(Clone, Copy)]
 struct Layer {
     base: f64,
@@ -66,7 +67,7 @@ impl Layer {
             }
     }
 
-    /// Geopotential altitude of a pressure.
+    /// Geopotential altitude (m) at which the pressure is `pressure` (Pa).
     fn height(&self, pressure: f64) -> f64 {
         let (part, fall) = (self.pressure / pressure, GRAVITY / GAS_CONSTANT);
         self.base
@@ -77,7 +78,7 @@ impl Layer {
     }
 }
 
-/// All layers, from below.
+/// All layers in ascending order.
 fn layers() -> [Layer; LAYERS.len()] {
     let mut layer = Layer { base: 0.0, slope: LAYERS[0].1, temperature: SEA.0, pressure: SEA.1 };
     LAYERS.map(|(base, slope)| {
@@ -86,7 +87,7 @@ fn layers() -> [Layer; LAYERS.len()] {
     })
 }
 
-/// Air at the geometric altitude `z` in metres; `None` outside [`RANGE`].
+/// State of the air at the geometric altitude `z` (m); `None` outside [`RANGE`].
 pub fn at(z: f64) -> Option<Air> {
     if !(RANGE[0]..=RANGE[1]).contains(&z) {
         return None;
@@ -98,13 +99,13 @@ pub fn at(z: f64) -> Option<Air> {
     Some(Air { temperature, pressure, density: pressure / heat, sound_speed: (GAMMA * heat).sqrt() })
 }
 
-/// Geometric altitude in metres at which the pressure is `pressure`, in Pa; `None` outside [`RANGE`].
+/// Geometric altitude (m) at which the pressure is `pressure` (Pa); `None` outside [`RANGE`].
 pub fn altitude(pressure: f64) -> Option<f64> {
     let all = layers();
     let layer = all.iter().rev().find(|layer| pressure <= layer.pressure).unwrap_or(&all[0]);
     let height = layer.height(pressure);
     let z = RADIUS * height / (RADIUS - height);
-    // round-off of the ends
+    // tolerance for round-off at both ends of the range
     let inside = (RANGE[0] - 1e-3..=RANGE[1] + 1e-3).contains(&z);
     inside.then(|| z.clamp(RANGE[0], RANGE[1]))
 }

@@ -10,7 +10,7 @@ use crate::math::jet::Scalar;
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[repr(C)]
 pub struct Conserved<const D: usize, S = f64> {
-    /// Density ρ.
+    /// Density ρ (mass per volume).
     pub density: S,
     /// Momentum per volume ρv.
     pub momentum: Vector<D, S>,
@@ -22,11 +22,11 @@ pub struct Conserved<const D: usize, S = f64> {
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[repr(C)]
 pub struct Primitive<const D: usize, S = f64> {
-    /// Density ρ.
+    /// Density ρ (mass per volume).
     pub density: S,
-    /// Velocity.
+    /// Velocity v of the gas.
     pub velocity: Vector<D, S>,
-    /// Static pressure.
+    /// Static pressure p of the gas.
     pub pressure: S,
 }
 

@@ -1,4 +1,4 @@
-//! Pointwise physics: no index, no slice, no particle.
+//! Physics at a point: gas, solids and atmosphere, without particles, indices or arrays of unknowns.
 pub mod atmosphere;
 pub mod gas;
 pub mod outgoing;
@@ -9,7 +9,7 @@ pub mod viscous;
 pub use gas::{Conserved, Gas, Primitive};
 pub use viscous::Newtonian;
 
-/// Unknowns of a particle in `dimension` dimensions: density, momentum and energy.
+/// Number of unknowns of a gas particle in `dimension` dimensions: density, momentum and energy.
 #[inline(always)]
 pub const fn n_variables(dimension: usize) -> usize {
     dimension + 2

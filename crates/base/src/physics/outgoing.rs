@@ -1,20 +1,21 @@
-//! What leaves through a side of the domain.
+//! Outgoing waves at a boundary of the domain: a far-field condition by characteristics.
 //!
-//! Along a normal n the Euler equations carry sound at u·n ± c, and the entropy p/ρ^γ and the velocity along the side at u·n
-//! (Hirsch, Numerical Computation of Internal and External Flows 2, 1990, section 16.4). Sound is told by J± = u·n ± 2a/(γ − 1) with
-//! the speed a of sound that the gas held would have at the pressure at hand: constant across the waves of the other way and across
-//! layers of other entropy. A side that holds a state swallows what arrives from within only if it goes on across it; if it ends
-//! there, a part comes back, since on a cloud no edge is normal to all waves.
+//! Along a normal n, the Euler equations transport acoustic waves at u·n ± c, and the entropy p/ρ^γ and the tangential
+//! velocity at u·n (Hirsch, Numerical Computation of Internal and External Flows 2, 1990, section 16.4). Acoustic waves
+//! are represented by J± = u·n ± 2a/(γ − 1), where a is the speed of sound that the prescribed gas would have at the
+//! local pressure; J± is constant across waves of the other family and across layers of different entropy. A boundary
+//! with a prescribed state absorbs a wave from inside only if the wave continues beyond it. Otherwise a part is
+//! reflected, because on a cloud no edge is normal to all waves.
 use super::{Gas, Primitive};
 use crate::math::Vector;
 use crate::math::jet::Scalar;
 
-/// Part of the speed of sound over which a wave that turns from leaving to arriving is faded out.
+/// Fraction of the speed of sound over which a wave that changes from outgoing to incoming is faded out.
 const FADE: f64 = 0.1;
-/// Least part of the speed of sound held that the state may have.
+/// Minimum speed of sound of the state, relative to that of the prescribed state.
 const LEAST: f64 = 0.1;
 
-/// J₊, J₋, p/ρ^γ and the velocity along the side.
+/// Transported quantities: J₊, J₋, p/ρ^γ and the tangential velocity.
 struct Carried<const D: usize, S> {
     sound: [S; 2],
     entropy: S,
@@ -22,7 +23,7 @@ struct Carried<const D: usize, S> {
 }
 
 impl<const D: usize, S: Scalar> Carried<D, S> {
-    /// Exponent of p in a.
+    /// Exponent of the pressure in a.
     fn exponent(gas: &Gas) -> f64 {
         0.5 * (gas.gamma - 1.0) / gas.gamma
     }
@@ -43,8 +44,9 @@ impl<const D: usize, S: Scalar> Carried<D, S> {
     }
 }
 
-/// The state on a side with normal `n` that moves with `w`: what it holds, with the part of the disturbance that leaves.
-/// `inner` is the state beside the side, `beside` what would be held there.
+/// State on a boundary with the normal `n` that moves with the velocity `w`: the prescribed state plus the outgoing
+/// part of the disturbance. `inner` is the state of the particle next to the boundary, `beside` the prescribed state at
+/// that particle.
 pub fn outgoing<const D: usize, S: Scalar>(
     gas: &Gas,
     held: &Primitive<D, S>,
@@ -66,7 +68,7 @@ pub fn outgoing<const D: usize, S: Scalar>(
         entropy: before.entropy * ((inside.entropy / usual.entropy).log() * part).exp(),
         along: before.along + (inside.along - usual.along) * part,
     };
-    // the difference is nothing, to the bit, where nothing leaves
+    // the difference is exactly zero if nothing leaves
     let change = after.state(gas, held, n).minus(&before.state(gas, held, n));
     held.plus(S::constant(1.0), &change)
 }
@@ -83,14 +85,14 @@ mod tests {
         Primitive { density: 1.4, velocity: N * mach, pressure: 1.0 }
     }
 
-    /// Greatest difference between what is on the side of a stream that ends in `inner` and `expected`.
+    /// Maximum difference between the boundary state of a stream that ends in `inner` and `expected`.
     fn error(mach: f64, inner: &Primitive<2>, expected: &Primitive<2>) -> f64 {
         let held = stream(mach);
         let d = outgoing(&AIR, &held, [inner, &held], (&N, &Vector::ZERO)).minus(expected);
         d.density.abs().max(d.pressure.abs()).max(d.velocity.norm())
     }
 
-    /// A simple wave in a stream, its velocity changed by `by` along ±n.
+    /// A simple wave in a stream, with its velocity changed by `by` along ±n.
     fn wave(mach: f64, by: f64, sign: f64) -> Primitive<2> {
         let c: f64 = 1.0 + 0.2 * by;
         Primitive { density: 1.4 * c.powf(5.0), velocity: N * (mach + sign * by), pressure: c.powf(7.0) }

@@ -1,9 +1,9 @@
 //! Viscous stress and heat conduction of a Newtonian gas.
 //!
-//! With the strain rate ε = (∇v + ∇vᵀ)/2 the viscous part of the stress is τ = 2μ (ε − ⅓ tr ε I) (Stokes: no bulk
-//! viscosity), and heat flows along q = −μ/((γ − 1) Pr) ∇θ, θ = γp/ρ: the temperature over that of the free stream when ρ
-//! and c are in units of the free stream. The flux of mass, momentum and energy that goes with them across an area n is
-//! (0, τ·n, v·τ·n − q·n), to be subtracted from that of the inviscid gas.
+//! With the strain rate ε = (∇v + ∇vᵀ)/2, the viscous stress is τ = 2μ (ε − ⅓ tr ε I) (Stokes: no bulk viscosity). The
+//! heat flux is q = −μ/((γ − 1) Pr) ∇θ with θ = γp/ρ, which is the temperature relative to that of the free stream if ρ
+//! and c are normalised by their free-stream values. The viscous flux of mass, momentum and energy across an area n is
+//! (0, τ·n, v·τ·n − q·n), which is subtracted from the inviscid flux.
 use super::{Conserved, Gas, Primitive};
 use crate::math::Vector;
 use crate::math::blocks::array;
@@ -26,7 +26,7 @@ pub struct Newtonian {
 /// Velocity, temperature and their gradients at one point, from which viscous fluxes follow.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Slopes<const D: usize, S = f64> {
-    /// Velocity.
+    /// Velocity of the gas.
     pub velocity: Vector<D, S>,
     /// Temperature θ = γp/ρ.
     pub temperature: S,

@@ -1,22 +1,22 @@
-//! Fields: what the unknowns of a state are, by name, and where they stand in it.
+//! Fields of a state: their names, and the ranges of their unknowns and rows.
 use std::borrow::Cow;
 use std::fmt;
 use std::ops::Range;
 
-/// What the unknowns of a field are.
+/// Name of a field, which says what its unknowns are.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Name {
     /// Density, momentum and energy of the gas.
     Gas,
-    /// Turbulence of the gas.
+    /// Turbulence variables of the gas.
     Turbulence,
-    /// Coordinates of bodies on springs, each with its rate.
+    /// Coordinates of elastically supported bodies, each with its rate.
     Structure,
-    /// Displacements and velocities of bodies made of particles.
+    /// Displacements and velocities of solids, which consist of particles.
     Solid,
-    /// What materials remember: it changes at the ends of steps alone.
+    /// Internal variables of materials, which change only when a step is accepted.
     History,
-    /// Something else, by its own word.
+    /// Any other field, with its own name.
     Other(&'static str),
 }
 
@@ -33,68 +33,69 @@ impl fmt::Display for Name {
     }
 }
 
-/// Unknowns of one kind: `rows` rows of `block` values each.
+/// A field: unknowns of one kind, stored as `rows` rows of `block` values each.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Field {
-    /// What they are.
+    /// Name of the field.
     pub name: Name,
-    /// The field whose particles they belong to: itself, unless they live on the cloud of another one, which has as many rows.
+    /// Name of the field whose particles the unknowns belong to. It differs from `name` if the unknowns are stored on
+    /// the cloud of another field, which then has the same number of rows.
     pub cloud: Name,
-    /// Rows: particles of a cloud, coordinates of a structure.
+    /// Number of rows: particles of a cloud or coordinates of a structure.
     pub rows: usize,
-    /// Unknowns of a row, those of all instances of a period one after another.
+    /// Number of unknowns of a row; the values of all instances of a period follow one another.
     pub block: usize,
-    /// How many of the unknowns of a row (and instance), the first ones, measure the size of a residual: the density of a gas
-    /// stands for all.
+    /// Number of leading unknowns of a row (and instance) that enter the norm of a residual: for a gas, the density
+    /// represents all conserved variables.
     pub measured: usize,
-    /// Instances of a period that a row holds; one unless the solution is periodic in time.
+    /// Number of time instances that a row holds; 1 unless the solution is periodic in time.
     pub instances: usize,
 }
 
 impl Field {
-    /// A field whose residual is measured by all its unknowns.
+    /// A field whose residual norm includes all its unknowns.
     pub const fn new(name: Name, rows: usize, block: usize) -> Self {
         Self { name, cloud: name, rows, block, measured: block, instances: 1 }
     }
 
-    /// The same on the cloud of another field.
+    /// This field, stored on the cloud of the field `cloud`.
     pub const fn on(self, cloud: Name) -> Self {
         Self { cloud, ..self }
     }
 
-    /// The same, measured by the first `measured` unknowns of each row.
+    /// This field with a residual norm that includes only the first `measured` unknowns of each row.
     pub const fn measured_by(self, measured: usize) -> Self {
         Self { measured, ..self }
     }
 
-    /// The same at a number of instances of a period.
+    /// This field at `count` instances of a period.
     pub const fn at_instances(self, count: usize) -> Self {
         Self { block: self.block * count, instances: self.instances * count, ..self }
     }
 
-    /// Unknowns.
+    /// Number of unknowns.
     pub const fn len(&self) -> usize {
         self.rows * self.block
     }
 
-    /// True when there are none.
+    /// True if the field has no unknowns.
     pub const fn is_empty(&self) -> bool {
         self.len() == 0
     }
 }
 
-/// A field with the place of its unknowns and rows among those of all fields.
+/// A field with the ranges of its unknowns and rows in the whole state.
 #[derive(Clone, Debug)]
 pub struct Placed {
-    /// The field.
+    /// The field itself.
     pub field: Field,
-    /// Its unknowns in the state.
+    /// Range of its unknowns in the state.
     pub unknowns: Range<usize>,
-    /// Its rows among all rows.
+    /// Range of its rows among all rows.
     pub rows: Range<usize>,
 }
 
-/// The fields one after another, as the state holds them.
+/// Fields with their ranges, one after another in the order of the state.
 pub fn placed(fields: &[Field]) -> impl Iterator<Item = Placed> + '_ {
     let (mut unknown, mut row) = (0, 0);
     fields.iter().map(move |field| {
@@ -104,35 +105,35 @@ pub fn placed(fields: &[Field]) -> impl Iterator<Item = Placed> + '_ {
     })
 }
 
-/// Unknowns of all fields.
+/// Number of unknowns of all fields.
 pub fn unknowns(fields: &[Field]) -> usize {
     fields.iter().map(Field::len).sum()
 }
 
-/// Rows of all fields.
+/// Number of rows of all fields.
 pub fn rows(fields: &[Field]) -> usize {
     fields.iter().map(|f| f.rows).sum()
 }
 
-/// Unknowns of the field `name` in the state; empty where there is none.
+/// Range of the unknowns of the field `name` in the state; empty if there is no such field.
 pub fn unknowns_of(fields: &[Field], name: Name) -> Range<usize> {
     placed(fields).find(|at| at.field.name == name).map_or(0..0, |at| at.unknowns)
 }
 
-/// Rows of the field `name` among all rows; empty where there is none.
+/// Range of the rows of the field `name` among all rows; empty if there is no such field.
 pub fn rows_of(fields: &[Field], name: Name) -> Range<usize> {
     placed(fields).find(|at| at.field.name == name).map_or(0..0, |at| at.rows)
 }
 
-/// Some of the unknowns of a state, range by range in the order of the state.
+/// A subset of the unknowns of a state, as ranges in the order of the state.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Ranges(Vec<Range<usize>>);
 
 impl Ranges {
-    /// None.
+    /// The empty subset.
     pub const NONE: &'static Self = &Self(Vec::new());
 
-    /// Those of the fields with these names.
+    /// Unknowns of the fields with the given names.
     pub fn of_fields(fields: &[Field], names: &[Name]) -> Self {
         let mut all: Vec<Range<usize>> = Vec::new();
         for at in placed(fields).filter(|at| names.contains(&at.field.name) && !at.unknowns.is_empty()) {
@@ -144,27 +145,27 @@ impl Ranges {
         Self(all)
     }
 
-    /// The same in a state that holds a number of instances of a period.
+    /// Corresponding ranges in a state that holds `count` instances of a period.
     pub fn at_instances(&self, count: usize) -> Self {
         Self(self.0.iter().map(|r| r.start * count..r.end * count).collect())
     }
 
-    /// Number of unknowns.
+    /// Number of unknowns in the subset.
     pub fn len(&self) -> usize {
         self.0.iter().map(Range::len).sum()
     }
 
-    /// True when there are none.
+    /// True if the subset is empty.
     pub fn is_empty(&self) -> bool {
         self.0.is_empty()
     }
 
-    /// True where all of `range` are among them.
+    /// True if the subset contains every index of `range`.
     pub fn contain(&self, range: &Range<usize>) -> bool {
         !range.is_empty() && self.0.iter().any(|r| r.start <= range.start && range.end <= r.end)
     }
 
-    /// Their values in the state `u`, one range after another; none in an empty state.
+    /// Values of the subset in the state `u`, one range after another; empty if the state is empty.
     pub fn values<'a>(&self, u: &'a [f64]) -> Cow<'a, [f64]> {
         let of = |r: &Range<usize>| u.get(r.clone()).unwrap_or_default();
         match &self.0[..] {
@@ -174,7 +175,7 @@ impl Ranges {
         }
     }
 
-    /// Gives them `values` in the state `u`.
+    /// Sets the unknowns of the subset in the state `u` to `values`.
     pub fn set(&self, values: &[f64], u: &mut [f64]) {
         let mut rest = values;
         for r in &self.0 {

@@ -1,40 +1,40 @@
-//! How a relaxation is steered: its method, Courant numbers and linear solver.
+//! Parameters of a relaxation: its method, Courant numbers and linear solver.
 use crate::math::multilevel::Cycle;
 
-/// How a steady state is approached.
+/// Method of relaxation to a steady state.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Method {
-    /// Newton-GMRES.
+    /// Newton-GMRES (Newton-Krylov) method.
     NewtonKrylov,
-    /// Sweeps alone.
+    /// Sweeps of the preconditioner alone (LU-SGS).
     Sweeps,
-    /// Explicit five-stage Runge-Kutta with local steps (Jameson 1991).
+    /// Explicit five-stage Runge-Kutta with local time steps (Jameson 1991).
     RungeKutta,
 }
 
-/// Numbers that steer the relaxation.
+/// Parameters of a relaxation.
 #[derive(Clone, Copy, Debug)]
 pub struct Control {
-    /// Method.
+    /// Method of relaxation.
     pub method: Method,
     /// Courant number at the start.
     pub cfl: f64,
-    /// Greatest Courant number.
+    /// Maximum Courant number.
     pub cfl_max: f64,
-    /// Greatest growth of the Courant number in one step.
+    /// Maximum factor by which the Courant number grows in one step.
     pub growth: f64,
-    /// Reduction asked of each linear solve.
+    /// Relative reduction of the residual in each linear solve.
     pub tolerance: f64,
-    /// Basis vectors of GMRES.
+    /// Maximum number of basis vectors of GMRES.
     pub basis: usize,
-    /// Rows a group of the hierarchy.
+    /// Number of rows that form one row of the next coarser level.
     pub group: usize,
-    /// Visits of the levels.
+    /// Multigrid cycle: the order in which levels are visited.
     pub cycle: Cycle,
 }
 
 impl Control {
-    /// Newton-GMRES in `dimension` dimensions, as every case is solved by default.
+    /// Newton-GMRES in `dimension` dimensions, with the default values of all cases.
     pub const fn newton(dimension: usize) -> Self {
         Self {
             method: Method::NewtonKrylov,
@@ -49,16 +49,16 @@ impl Control {
     }
 }
 
-/// Which of the two ways a Newton-Krylov relaxation is going, and how well.
+/// Phase of a Newton-Krylov relaxation, and its progress.
 #[derive(Clone, Copy, Debug)]
 pub struct Phase {
-    /// Newton's method rather than sweeps alone.
+    /// True for Newton's method, false for sweeps alone.
     pub newton: bool,
-    /// Iterations in this phase.
+    /// Number of iterations in this phase.
     pub age: u32,
-    /// Smallest residual in this phase.
+    /// Minimum residual in this phase.
     pub best: f64,
-    /// When that was.
+    /// Iteration of the phase at which the minimum was reached.
     pub best_age: u32,
 }
 

@@ -1,7 +1,8 @@
-//! Implicit marching: backward differences, each step relaxed in a pseudo time (Jameson, AIAA 91-1596).
+//! Implicit marching: backward differences, where each step is relaxed in pseudo time (Jameson, AIAA 91-1596).
 //!
-//! R(U) − ∂U/∂t = 0 with ∂U/∂t = Σ c_k U(t_k): the first-order formula in the first step, then the second-order one of three
-//! times, written for steps of unequal length. Positions of particles are differenced with the same formula as the state.
+//! R(U) − ∂U/∂t = 0 with ∂U/∂t = Σ c_k U(t_k): the first step uses the first-order formula, all later steps the
+//! second-order formula of three times for unequal step lengths. Particle velocities follow from positions by the same
+//! formula as the state.
 use super::control::{Control, Method};
 use super::formula::Formula;
 use super::relax::{Relax, TimeTerm};
@@ -11,68 +12,72 @@ use crate::math::parallel::sweep;
 use crate::math::reduce::sum;
 use crate::system::{Implicit, Instant, Name, Reach};
 
-/// Greatest ratio of successive steps.
+/// Maximum ratio of successive step lengths.
 const GROWTH: f64 = 1.5;
-/// Smallest ratio of successive steps.
+/// Minimum ratio of successive step lengths.
 const SHRINK: f64 = 0.3;
-/// Fraction of the step that the error estimate asks for that is taken.
+/// Safety factor on the step length that follows from the error estimate.
 const SAFETY: f64 = 0.9;
-/// Residual over its start above which a step that ran out of iterations, or stalled, is refused.
+/// Ratio of the residual to its initial value above which a step is rejected if it ran out of iterations or stalled.
 const HOPELESS: f64 = 0.3;
-/// Relative change of density or pressure of a particle above which such a step is refused as well: a state that runs away at one
-/// particle hardly shows in the residual of all of them.
+/// Relative change of density or pressure of a particle above which such a step is rejected as well: the divergence of
+/// a single particle is hardly visible in the norm of the residual.
 const RUNAWAY: f64 = 0.5;
-/// Bend of the last three states over their slope above which the next one is not guessed from a parabola: after a jerk.
+/// Ratio of the curvature of the last three states to their slope above which the next state is not extrapolated by a
+/// parabola, as after a sudden change of motion.
 const STRAIGHT: f64 = 0.5;
-/// Orders that the residual of such a guess falls at least: one that counts as solved for itself would be guessed from again and again.
+/// Minimum reduction (log10) of the residual of such an extrapolated guess. Without it, a guess could meet the
+/// tolerance by itself, and the solution would be extrapolated again and again without iterations.
 const GUESS: f64 = -0.5;
-/// Greatest ratio of successive steps of a march with fixed ones, where some were cut: BDF2 takes 2.4.
+/// Maximum ratio of successive step lengths in a march with fixed steps of which some were halved: BDF2 is stable up to
+/// 2.4.
 const LENGTHEN: f64 = 2.0;
-/// Part of a fixed step down to which it is halved where Newton's method stalls.
+/// Minimum fraction of a fixed step to which it is halved if Newton's method stalls.
 const SHORTEST: f64 = 0.02;
-/// Part of a step by which a time may fall short of the end of one.
+/// Fraction of a step below which the remaining time to its end counts as zero.
 const NEARLY: f64 = 1e-6;
-/// Steps after which linear systems that needed the levels are tried without them again.
+/// Number of steps after which linear systems that needed the multilevel cycle are tried without it again.
 const TRY_AGAIN: u32 = 16;
-/// Steps that one preconditioner serves; the states from which it can be made again are kept for as many.
+/// Number of steps for which one preconditioner is used; the states from which it can be rebuilt are stored for the
+/// same number of steps.
 const SERVES: u32 = 3;
 
-/// How to march.
+/// Parameters of an implicit march.
 #[derive(Clone, Copy, Debug)]
 pub struct Plan {
     /// Time at which the march ends.
     pub until: f64,
-    /// Length of the (first) step.
+    /// Length of the steps, or of the first step if the length is adaptive.
     pub step: f64,
     /// Order of the difference formula, 1 or 2.
     pub order: u8,
-    /// Orders of magnitude the residual must fall within a step.
+    /// Orders of magnitude by which the residual must fall within a step.
     pub orders: f64,
-    /// Greatest number of iterations within a step.
+    /// Maximum number of iterations within a step.
     pub iterations: u32,
-    /// Relative error of a step that its length is fitted to; `None`: fixed steps.
+    /// Relative error of a step from which the step length follows; `None` for fixed steps.
     pub adaptive: Option<f64>,
 }
 
-/// An implicit march.
+/// An implicit march in time.
 pub struct Dual<'a, S: Implicit> {
     system: &'a S,
     relax: Relax<'a, S>,
     plan: Plan,
     past: Past,
     start: Vec<f64>,
-    /// The line through the states of the last two steps at the end of this one.
+    /// State at the end of the current step, extrapolated linearly from the last two steps.
     line: Vec<f64>,
     inner: u32,
-    /// Longest step of particles that follow the state; infinite where none do.
+    /// Maximum step length for Lagrangian particles; infinite if there are none.
     reach: f64,
 }
 
 impl<'a, S: Implicit> Dual<'a, S> {
-    /// Prepares a march from the state `u`.
+    /// Prepares a march from the state `u`; `past` is empty at the start or holds the data of an interrupted march.
     pub fn new(system: &'a S, control: Control, plan: Plan, past: Past, u: Vec<f64>) -> Self {
         let start = u.clone();
-        // the term of time makes the matrix easy: one sweep each way does
+        // the time derivative makes the matrix diagonally dominant, so that one symmetric sweep suffices
         let newton = control.method == Method::NewtonKrylov;
         let sweeps = if newton { 1 } else { control.cycle.sweeps };
         let control = Control { cycle: Cycle { sweeps, ..control.cycle }, ..control };
@@ -143,7 +148,7 @@ impl<S: Implicit> Integrator<S> for Dual<'_, S> {
             self.relax.u.copy_from_slice(&self.start);
         }
         let end = self.past.time + dt;
-        // steps of fixed length add up without gathering round-off
+        // the end of fixed steps is a multiple of their length, so that round-off does not accumulate
         let near = (end - self.plan.until).abs() < 1e-9 * dt;
         self.past.time = if near { self.plan.until } else { end };
         let even = self.is_even(dt);
@@ -161,7 +166,7 @@ impl<S: Implicit> Integrator<S> for Dual<'_, S> {
 }
 
 impl<S: Implicit> Dual<'_, S> {
-    /// Keeps what the next steps go on from; `even` if the last two steps were of one length.
+    /// Stores the data for the next steps; `even` is true if the last two steps had the same length.
     fn remember(&mut self, even: bool) {
         let past = &mut self.past;
         past.served = if self.relax.still_serves() { past.served + 1 } else { 0 };
@@ -177,9 +182,9 @@ impl<S: Implicit> Dual<'_, S> {
         self.start.resize(self.relax.u.len(), 0.0);
     }
 
-    /// Makes the preconditioner of the step of length `dt` and those after it from where this one starts.
+    /// Builds the preconditioner for the step of length `dt` and the following ones from the state at its start.
     fn prepare(&mut self, formula: &Formula, end: f64, dt: f64) {
-        // where particles were some steps ago, a run that is resumed no longer knows
+        // a resumed run does not know the positions of Lagrangian particles some steps ago
         let known = self.is_even(dt) && !self.past.older.is_empty() && self.reach == f64::INFINITY;
         if !known {
             self.past.served = 0;
@@ -190,7 +195,7 @@ impl<S: Implicit> Dual<'_, S> {
         }
     }
 
-    /// Makes the preconditioner that served when the march was interrupted.
+    /// Rebuilds the preconditioner that was in use when the march was interrupted.
     fn make_again(&mut self) {
         let (step, made) = (self.past.last, self.past.made);
         let state = match self.past.served {
@@ -203,7 +208,7 @@ impl<S: Implicit> Dual<'_, S> {
         self.set_frame_after_step();
     }
 
-    /// Brings the frame to where the last step ended.
+    /// Moves the frame to the end of the last step.
     fn set_frame_after_step(&mut self) {
         let placing = self.system.placing();
         let (time, last) = (self.past.time, self.past.last.max(f64::MIN_POSITIVE));
@@ -222,7 +227,8 @@ impl<S: Implicit> Dual<'_, S> {
         self.plan.order == 2 && !self.past.before.is_empty()
     }
 
-    /// Length of the next step if all goes well; steps of fixed length that were cut lead on to where they would have ended.
+    /// Length of the next step if it succeeds; after fixed steps that were halved, it leads to the end of the original
+    /// step.
     fn planned(&self) -> f64 {
         let (time, step, left) = (self.past.time, self.plan.step, self.plan.until - self.past.time);
         if self.plan.adaptive.is_some() {
@@ -234,14 +240,15 @@ impl<S: Implicit> Dual<'_, S> {
         dt.min(left)
     }
 
-    /// The step `dt`, or an equal part of it where particles do not go as far or the step before was cut.
+    /// The step length `dt`, or an equal fraction of it if Lagrangian particles do not allow it or the last step was
+    /// halved.
     fn within_reach(&self, dt: f64) -> f64 {
         let (last, steps) = (self.past.last, self.plan.adaptive.is_none());
         let longest = if steps && last > 0.0 { self.reach.min(LENGTHEN * last) } else { self.reach };
         dt / (dt / longest - NEARLY).ceil().max(1.0)
     }
 
-    /// ∂/∂t at `end`, after steps of length `last` and `dt`.
+    /// Difference formula of ∂/∂t at `end`, after steps of length `last` and `dt`.
     fn formula_at(&self, end: f64, last: f64, dt: f64) -> Formula {
         match self.second_order() {
             true => Formula::second_order(end, dt, last),
@@ -249,7 +256,7 @@ impl<S: Implicit> Dual<'_, S> {
         }
     }
 
-    /// Solves one step and returns its relative error estimate, zero where there is none.
+    /// Solves one step of length `dt` and returns its relative error estimate; 0 if there is none.
     fn step(&mut self, dt: f64) -> Result<f64, TimeError> {
         let end = self.past.time + dt;
         let (start, before, placing) = (&self.start, &self.past.before, self.system.placing());
@@ -266,7 +273,7 @@ impl<S: Implicit> Dual<'_, S> {
         self.prepare(&formula, end, dt);
         self.relax.begin_step(TimeTerm { formula, rest });
         let orders = self.plan.orders;
-        // of a guess through three states the residual is 9/2 times the truncation error of the difference formula
+        // the residual of a guess through three states is 9/2 times the truncation error of the difference formula
         let guessed = if smooth { 10f64.powf((1.0 - orders).min(GUESS)) * self.relax.drop() } else { 0.0 };
         self.relax.goal = 10f64.powf(-orders).max(guessed);
         if let Err(fault) = self.relax.check_frame() {
@@ -274,7 +281,8 @@ impl<S: Implicit> Dual<'_, S> {
             return Err(TimeError::Fault { fault, iteration: self.past.iteration + 1, hint: CROWDED });
         }
         self.solve()?;
-        // the predictor is of the same order with another constant: 1/3 of the difference for equal steps
+        // the predictor has the same order with a different constant: the error is 1/3 of the difference for equal
+        // steps
         let (u, line) = (&self.relax.u, &self.line);
         let error = || {
             let (change, size) = (sum(u.len(), |k| (u[k] - line[k]).powi(2)), sum(u.len(), |k| u[k] * u[k]));
@@ -285,7 +293,7 @@ impl<S: Implicit> Dual<'_, S> {
         Ok(error)
     }
 
-    /// Within a step what is remembered stays as it was at its start: ∂/∂t of it is nothing.
+    /// Keeps the internal variables of materials constant within a step: their ∂/∂t is zero.
     fn keep_what_is_remembered(&mut self, formula: &Formula, rest: &mut [f64]) {
         let own = self.system.unknowns_of(Name::History);
         let start = &self.start[own.clone()];
@@ -296,8 +304,8 @@ impl<S: Implicit> Dual<'_, S> {
         rest[own].iter_mut().zip(start).for_each(|(rest, h)| *rest = -formula.coefficient(0) * h);
     }
 
-    /// Starts from the parabola through the last three states where it serves, or from the line through two, or from where
-    /// the state is; true for the parabola.
+    /// Sets the initial guess of a step: the parabola through the last three states if it is smooth enough, else the
+    /// line through the last two states, else the current state. Returns true for the parabola.
     fn begin_on_line(&mut self, dt: f64) -> bool {
         let (start, before, older) = (&self.start, &self.past.before, &self.past.older);
         let ratio = dt / self.past.last;
@@ -322,7 +330,7 @@ impl<S: Implicit> Dual<'_, S> {
         false
     }
 
-    /// Puts state and particles where the step began.
+    /// Restores state and particles to the start of the step.
     fn go_back(&mut self) {
         self.relax.u.copy_from_slice(&self.start);
         if self.reach < f64::INFINITY {
@@ -337,7 +345,8 @@ impl<S: Implicit> Dual<'_, S> {
             let tried = if over { Err(self.relax.stalled()) } else { self.relax.advance() };
             match tried {
                 Ok(_) => self.inner += 1,
-                // a limiter that flips keeps the residual from falling further: the step is as good as it gets
+                // a limiter that switches between values keeps the residual from falling further: the step is accepted
+                // as converged
                 Err(TimeError::Stalled { .. })
                     if self.relax.drop() < HOPELESS && self.relax.changed_since(&self.start) < RUNAWAY =>
                 {
@@ -354,8 +363,8 @@ impl<S: Implicit> Dual<'_, S> {
     }
 }
 
-/// Makes a preconditioner from the state `state` for the step that ends at `end`: a function of these alone. Bodies that have
-/// coordinates of their own stand where that state puts them.
+/// Builds a preconditioner from the state `state` for the step that ends at `end`. It depends on these alone. Bodies
+/// with coordinates are placed according to that state.
 fn make_ahead<S: Implicit>(
     system: &S,
     relax: &mut Relax<'_, S>,

@@ -4,20 +4,21 @@ use crate::math::parallel::sweep;
 use crate::math::reduce::maximum;
 use crate::system::{Instant, System, rows};
 
-/// Coefficients in the form u_s = Σ_r α_r u_r + β Δt R(u_{s−1}): here α on the start and on the last stage only.
+/// Coefficients of a stage u_s = Σ_r α_r u_r + β Δt R(u_{s−1}), where α is non-zero for the start and for the last
+/// stage only.
 #[derive(Clone, Copy, Debug)]
 pub struct Stage {
-    /// α of the start of the step.
+    /// Coefficient α of the state at the start of the step.
     pub start: f64,
-    /// α of the stage before.
+    /// Coefficient α of the previous stage.
     pub last: f64,
-    /// β.
+    /// Coefficient β of Δt R.
     pub step: f64,
-    /// Part of the step that has passed where R is evaluated.
+    /// Elapsed fraction of the step at which R is evaluated.
     pub time: f64,
 }
 
-/// Three stages, third order, strong-stability-preserving (Shu and Osher 1988).
+/// Strong-stability-preserving method of third order with three stages (Shu and Osher 1988).
 pub const SSPRK3: [Stage; 3] = [
     Stage { start: 0.0, last: 1.0, step: 1.0, time: 0.0 },
     Stage { start: 0.75, last: 0.25, step: 0.25, time: 1.0 },
@@ -27,24 +28,24 @@ pub const SSPRK3: [Stage; 3] = [
 /// Method of an explicit march.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Method {
-    /// Strong-stability-preserving, third order.
+    /// Strong-stability-preserving method of third order with three stages.
     Ssprk3,
-    /// Classical, fourth order.
+    /// Classical method of fourth order with four stages.
     Rk4,
 }
 
-/// How to march.
+/// Parameters of an explicit march.
 #[derive(Clone, Copy, Debug)]
 pub struct Plan {
-    /// Method.
+    /// Runge-Kutta method of the march.
     pub method: Method,
-    /// Courant number of the steps.
+    /// Courant number, from which the step length follows.
     pub cfl: f64,
     /// Time at which the march ends.
     pub until: f64,
 }
 
-/// A march from `t` to `until` with steps limited by the Courant number.
+/// An explicit march whose step length follows from the Courant number.
 pub struct Explicit<'a, S: System> {
     system: &'a S,
     method: Method,
@@ -89,7 +90,7 @@ impl<'a, S: System> Explicit<'a, S> {
         }
     }
 
-    /// The longest stable step, given how fast particles move now.
+    /// Maximum stable step for the current velocities of particles.
     fn step_length(&mut self) -> f64 {
         self.system.rates(&self.frame, &self.u, &mut self.work, &mut self.rate);
         self.cfl / maximum(self.rate.len(), |i| self.rate[i])
@@ -101,7 +102,7 @@ impl<'a, S: System> Explicit<'a, S> {
         self.evaluations += 1;
     }
 
-    /// Brings the frame to part of the way through the step of length `dt` that begins now.
+    /// Moves the frame to the fraction `fraction` of the step of length `dt` that begins now.
     fn place(&mut self, dt: f64, fraction: f64) {
         let coordinates = self.system.placing().values(&self.u);
         let at = Instant::within(self.past.time, dt, fraction).with(&coordinates);
@@ -153,7 +154,7 @@ impl<S: System> Integrator<S> for Explicit<'_, S> {
         let reach = self.system.plan_lagrangian_step(0.0, &self.u, &mut self.work, &mut self.frame);
         let mut longest = self.step_length().min(reach);
         if self.past.last == 0.0 {
-            // later on velocities of particles are those of the step before
+            // later steps estimate the velocities of particles by those of the previous step
             self.place(longest, 0.0);
             longest = longest.min(self.step_length());
         }
@@ -188,7 +189,7 @@ impl<S: System> Integrator<S> for Explicit<'_, S> {
     }
 }
 
-/// x[k] = f(k, x[k]).
+/// Sets x[k] = f(k, x[k]) for all k.
 fn combine(x: &mut [f64], f: impl Fn(usize, f64) -> f64 + Sync) {
     crate::math::parallel::sweep_rows(x, 1, |k, row| row[0] = f(k, row[0]));
 }

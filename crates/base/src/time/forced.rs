@@ -1,105 +1,107 @@
-//! How the periodic motion of a forced structure is found: Newton's method with GMRES, damped, and a homotopy where it does not get on.
+//! Periodic motion of a forced structure: damped Newton-GMRES, with continuation in the load if it does not converge.
 //!
-//! With r(u) what is left of the equations of [`super::vibration`] and u₀ where the search begins (the equilibrium under the mean
-//! load), r(u) = (1 − s) r(u₀) is solved for s = 1, or for smaller s first: under loads and movements of supports in that part. A step δ of
-//! Newton's method is taken as far as ‖P⁻¹r‖ falls with it, P being the preconditioner at its start: the natural test of monotonicity
-//! (Deuflhard 2004, *Newton Methods for Nonlinear Problems*, section 3.3), which measures displacements, whatever the stiffness. GMRES is
-//! preconditioned from the left, so that it measures them too.
+//! Let r(u) be the residual of the equations of [`super::vibration`] and u₀ the initial state (the equilibrium under
+//! the mean load). The equation r(u) = (1 − s) r(u₀) is solved for s = 1, or first for smaller s, which corresponds to
+//! the fraction s of the loads and support motions. A Newton step δ is shortened until ‖P⁻¹r‖ decreases, where P is the
+//! preconditioner at the start of the step: the natural monotonicity test (Deuflhard 2004, *Newton Methods for
+//! Nonlinear Problems*, section 3.3), which measures displacements independently of the stiffness. GMRES is
+//! preconditioned from the left and therefore measures displacements too.
 use super::vibration::Vibration;
 use crate::math::krylov::{Gmres, Goal, Numbers, System};
 use crate::math::reduce::{dot, maximum};
 use crate::system::Mechanical;
 
-/// When a search ends.
+/// Convergence criteria of a search.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Stop {
-    /// Orders of magnitude that ‖P⁻¹r‖ must fall.
+    /// Orders of magnitude by which ‖P⁻¹r‖ must fall.
     pub orders: f64,
-    /// Part of the displacements that it may be.
+    /// Maximum ratio of ‖P⁻¹r‖ to the displacements.
     pub tolerance: f64,
-    /// Greatest number of iterations.
+    /// Maximum number of iterations.
     pub iterations: u32,
 }
 
-/// Where a search stands: what a later one needs to go on to the same bits.
+/// State of a search, from which a later search continues with identical results.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Place {
     /// Displacements at all instances.
     pub u: Vec<f64>,
-    /// Those that solve the part reached.
+    /// Displacements of the last load fraction that was solved.
     pub last_good: Vec<f64>,
-    /// What was left where the search began.
+    /// Residual r(u₀) at the start of the search.
     pub start: Vec<f64>,
-    /// The part reached.
+    /// Largest load fraction that was solved, 0 to 1.
     pub reached: f64,
-    /// The part sought.
+    /// Load fraction that is being solved, 0 to 1.
     pub sought: f64,
-    /// ‖P⁻¹r‖ where the search for that part began.
+    /// ‖P⁻¹r‖ at the start of the search for that fraction.
     pub first: f64,
-    /// Iterations since.
+    /// Number of iterations since the start of the search for that fraction.
     pub within: u32,
-    /// Iterations of Newton's method.
+    /// Total number of Newton iterations.
     pub iterations: u32,
-    /// Linear iterations.
+    /// Total number of linear iterations.
     pub linear: u32,
-    /// Times the part sought was halved.
+    /// Number of times that the load increment was halved.
     pub halved: u32,
 }
 
-/// What one iteration did.
+/// Result of one iteration.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Told {
-    /// ‖P⁻¹r‖ over its first value.
+    /// Ratio of ‖P⁻¹r‖ to its first value.
     pub residual: f64,
-    /// Part of Newton's step that was taken; 0 where none could be.
+    /// Fraction of the Newton step that was applied; 0 if no fraction was acceptable.
     pub taken: f64,
 }
 
-/// Why no periodic motion was found.
+/// Reason why no periodic motion was found.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum NotFound {
-    /// A linear system has no solution.
+    /// A linear system is singular.
     #[error(
-        "the linear systems of the periodic motion have no solution: the structure vibrates by itself at a harmonic of its frequency, or nothing holds it\nhint: add damping (`damping`, `stiffness_damping`) or supports, or take another frequency"
+        "the linear systems of the periodic motion have no solution: a harmonic of the excitation is a natural frequency of the structure, or the structure has no supports\nhint: add damping (`damping`, `stiffness_damping`) or supports, or choose another frequency"
     )]
     Singular,
-    /// Newton's method does not get on.
+    /// Newton's method does not converge.
     #[error(
-        "no periodic motion was found beyond {:.1} % of the load, after {iterations} iterations{}\nhint: the motion may fold back there, as near the resonance of stiffening structures: take more damping (`damping`, `stiffness_damping`), another frequency or a smaller load, or march with `[time.newmark]`",
+        "no periodic motion was found beyond {:.1} % of the load, after {iterations} iterations{}\nhint: the solution branch may have a turning point there, as near the resonance of stiffening structures: use more damping (`damping`, `stiffness_damping`), another frequency or a smaller load, or march in time with `[time.newmark]`",
         100.0 * .reached, .fault.as_ref().map(|f| format!(": {f}")).unwrap_or_default()
     )]
     Stuck {
-        /// Part of the load that was reached.
+        /// Fraction of the load that was solved.
         reached: f64,
-        /// Iterations used.
+        /// Number of iterations.
         iterations: u32,
-        /// What was wrong with the last state that was tried, where something was.
+        /// Fault of the last trial state, if it was not physical.
         fault: Option<String>,
     },
-    /// There are no iterations left.
+    /// The maximum number of iterations is reached.
     #[error(
-        "no periodic motion was found in {iterations} iterations, only that under {:.1} % of the load\nhint: raise `time.harmonics.iterations` and go on with `alula resume`",
+        "no periodic motion was found in {iterations} iterations; the search reached {:.1} % of the load\nhint: raise `time.harmonics.iterations` and continue with `alula resume`",
         100.0 * .reached
     )]
     Exhausted {
-        /// Part of the load that was reached.
+        /// Fraction of the load that was solved.
         reached: f64,
-        /// Iterations used.
+        /// Number of iterations.
         iterations: u32,
     },
 }
 
-/// Greatest number of basis vectors of GMRES, and what it leaves of a linear system.
+/// Maximum number of basis vectors of GMRES, and its relative reduction of the residual.
 const BASIS: usize = 80;
 const LEFT: f64 = 1e-3;
-/// The least part of a step of Newton's method, and the most iterations for a part of the load.
+/// Minimum fraction of a Newton step, and maximum number of iterations for one load fraction.
 const LEAST: f64 = 1.0 / 64.0;
 const MOST: u32 = 25;
-/// The least part of the load that is added.
+/// Minimum increment of the load fraction.
 const LEAST_LOAD: f64 = 1.0 / 256.0;
-/// What parts of the load that are passed on the way may leave, over the displacements.
+/// Tolerance for intermediate load fractions, relative to the displacements.
 const ROUGH: f64 = 1e-2;
-/// Parts of the forces: what is as good as nothing, and what round-off may leave where Newton's method gets no further.
+/// Residual relative to the forces that counts as zero, and that which is accepted as round-off if Newton's method
+/// makes no further progress.
 const NOTHING: f64 = 1e-13;
 const ROUND_OFF: f64 = 1e-6;
 
@@ -107,21 +109,21 @@ const ROUND_OFF: f64 = 1e-6;
 pub struct Forced<'v, 'a, S: Mechanical> {
     vibration: &'v mut Vibration<'a, S>,
     stop: Stop,
-    /// Where it stands.
+    /// State of the search.
     pub place: Place,
     gmres: Gmres,
 }
 
-/// A state that was tried.
+/// Evaluation of a trial state.
 struct Tried {
-    /// ‖P⁻¹r‖.
+    /// Norm ‖P⁻¹r‖ of the preconditioned residual.
     level: f64,
-    /// The largest entry of r over the largest force.
+    /// Maximum component of r relative to the maximum force.
     left: f64,
 }
 
 impl<'v, 'a, S: Mechanical> Forced<'v, 'a, S> {
-    /// A search from the displacements `u`.
+    /// Starts a search from the displacements `u`.
     pub fn new(vibration: &'v mut Vibration<'a, S>, stop: Stop, mut u: Vec<f64>) -> Result<Self, NotFound> {
         vibration.hold(&mut u);
         let mut start = vec![0.0; u.len()];
@@ -131,18 +133,18 @@ impl<'v, 'a, S: Mechanical> Forced<'v, 'a, S> {
         Ok(Self::at(vibration, stop, place))
     }
 
-    /// A search that goes on.
+    /// Continues a search from the state `place`.
     pub fn at(vibration: &'v mut Vibration<'a, S>, stop: Stop, place: Place) -> Self {
         let gmres = Gmres::new(place.u.len(), BASIS);
         Self { vibration, stop, place, gmres }
     }
 
-    /// True when the motion is found.
+    /// True if the periodic motion is found.
     pub fn finished(&self) -> bool {
         self.place.reached >= 1.0
     }
 
-    /// What is left at `u` of the part that is sought.
+    /// Residual at `u` for the current load fraction; returns the maximum force.
     fn left(&mut self, u: &[f64], out: &mut [f64]) -> Result<f64, String> {
         let scale = self.vibration.residual(u, out).map_err(|f| f.reason)?;
         let part = 1.0 - self.place.sought;
@@ -150,7 +152,7 @@ impl<'v, 'a, S: Mechanical> Forced<'v, 'a, S> {
         Ok(scale)
     }
 
-    /// Looks at the state `u`; what solves the preconditioner for what is left of it is in `z`.
+    /// Evaluates the state `u` and writes P⁻¹r to `z`.
     fn look(&mut self, u: &[f64], z: &mut [f64]) -> Result<Tried, String> {
         let mut r = vec![0.0; u.len()];
         let scale = self.left(u, &mut r)?;
@@ -159,11 +161,11 @@ impl<'v, 'a, S: Mechanical> Forced<'v, 'a, S> {
         let level = rms(z);
         match level.is_finite() {
             true => Ok(Tried { level, left: if scale > 0.0 { largest / scale } else { 0.0 } }),
-            false => Err("displacements are no numbers".into()),
+            false => Err("a displacement is not finite".into()),
         }
     }
 
-    /// One iteration of Newton's method.
+    /// Computes one iteration of Newton's method.
     pub fn advance(&mut self) -> Result<Told, NotFound> {
         let Place { reached, iterations, .. } = self.place;
         if iterations >= self.stop.iterations {
@@ -203,7 +205,7 @@ impl<'v, 'a, S: Mechanical> Forced<'v, 'a, S> {
         self.take(&u, &step, &before)
     }
 
-    /// Takes as much of a step as does good.
+    /// Line search: applies the largest fraction of a step that decreases ‖P⁻¹r‖.
     fn take(&mut self, u: &[f64], step: &[f64], before: &Tried) -> Result<Told, NotFound> {
         let (mut part, mut z, mut fault) = (1.0, vec![0.0; u.len()], None);
         while part >= LEAST {
@@ -230,7 +232,7 @@ impl<'v, 'a, S: Mechanical> Forced<'v, 'a, S> {
         self.retreat(fault)
     }
 
-    /// True where what is left is little enough.
+    /// True if the residual is small enough.
     fn is_solved(&self, now: &Tried, size: f64) -> bool {
         let fallen = now.level <= 10f64.powf(-self.stop.orders) * self.place.first;
         match self.place.sought >= 1.0 {
@@ -239,7 +241,7 @@ impl<'v, 'a, S: Mechanical> Forced<'v, 'a, S> {
         }
     }
 
-    /// The part that was sought is reached.
+    /// Accepts the current load fraction as solved, and selects the next one.
     fn passed(&mut self) {
         let place = &mut self.place;
         let step = place.sought - place.reached;
@@ -248,7 +250,7 @@ impl<'v, 'a, S: Mechanical> Forced<'v, 'a, S> {
         place.last_good.copy_from_slice(&place.u);
     }
 
-    /// Back to what was reached, to seek less.
+    /// Returns to the last solved load fraction and halves the increment.
     fn retreat(&mut self, fault: Option<String>) -> Result<Told, NotFound> {
         let place = &mut self.place;
         let step = 0.5 * (place.sought - place.reached);
@@ -256,7 +258,7 @@ impl<'v, 'a, S: Mechanical> Forced<'v, 'a, S> {
         place.halved += 1;
         place.within = 0;
         if step < LEAST_LOAD {
-            // a later run tries all of it at once
+            // a later run first tries the full load
             place.sought = 1.0;
             return Err(NotFound::Stuck { reached: place.reached, iterations: place.iterations, fault });
         }
@@ -264,18 +266,18 @@ impl<'v, 'a, S: Mechanical> Forced<'v, 'a, S> {
         Ok(Told { residual: 1.0, taken: 0.0 })
     }
 
-    /// True where a part of the load has had its iterations.
+    /// True if the iterations for the current load fraction are used up.
     fn is_late(&self) -> bool {
         self.place.within >= MOST
     }
 
-    /// One iteration, or a step back where there were too many for a part of the load.
+    /// Computes one iteration, or reduces the load increment if the current load fraction took too many iterations.
     pub fn step(&mut self) -> Result<Told, NotFound> {
         if self.is_late() { self.retreat(None) } else { self.advance() }
     }
 }
 
-/// Root mean square.
+/// Root mean square of `x`.
 fn rms(x: &[f64]) -> f64 {
     (dot(x, x) / x.len().max(1) as f64).sqrt()
 }

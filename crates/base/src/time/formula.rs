@@ -4,15 +4,15 @@
 //! c = [(1 + 2r)/(1 + r), −(1 + r), r²/(1 + r)]/Δt.
 use crate::system::{Instant, Rate, Term};
 
-/// A difference formula with the coordinates of bodies at its times; those of the state that is sought are given when it is
-/// used.
+/// A difference formula with the coordinates of bodies at its times, except those of the new state, which are passed to
+/// [`Formula::at`].
 #[derive(Clone, Debug, Default)]
 pub struct Formula {
     terms: [Known; 3],
     count: usize,
 }
 
-/// One term.
+/// One term of the formula.
 #[derive(Clone, Debug, Default)]
 struct Known {
     coefficient: f64,
@@ -21,12 +21,12 @@ struct Known {
 }
 
 impl Formula {
-    /// (f(end) − f(end − dt))/dt.
+    /// First-order formula (f(end) − f(end − dt))/dt.
     pub fn first_order(end: f64, dt: f64) -> Self {
         Self::of(&[(1.0 / dt, end), (-1.0 / dt, end - dt)])
     }
 
-    /// The formula of three times, after steps of length `last` and `dt`.
+    /// Second-order formula of three times, after steps of length `last` and `dt`.
     pub fn second_order(end: f64, dt: f64, last: f64) -> Self {
         let r = dt / last;
         Self::of(&[
@@ -44,7 +44,7 @@ impl Formula {
         all
     }
 
-    /// The same with the coordinates of bodies at its second time, its third, and so on.
+    /// This formula with the coordinates of bodies at its second time, its third time, and so on.
     pub fn with_past(mut self, past: &[&[f64]]) -> Self {
         for (term, coordinates) in self.terms[..self.count].iter_mut().skip(1).zip(past) {
             term.coordinates = coordinates.to_vec();
@@ -57,12 +57,12 @@ impl Formula {
         self.terms[0].time
     }
 
-    /// Coefficient of term `k`; zero beyond the last.
+    /// Coefficient of term `k`; 0 beyond the last term.
     pub fn coefficient(&self, k: usize) -> f64 {
         self.terms.get(k).map_or(0.0, |t| t.coefficient)
     }
 
-    /// Calls `f` with the instant at the end of the step, where bodies have the coordinates `coordinates`.
+    /// Calls `f` with the instant at the end of the step, for bodies with the coordinates `coordinates`.
     pub fn at<T>(&self, coordinates: &[f64], f: impl FnOnce(&Instant<'_>) -> T) -> T {
         let mut terms = [Term::of_time(0.0, 0.0); 3];
         let count = self.count;

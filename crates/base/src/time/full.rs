@@ -1,14 +1,15 @@
-//! Linear systems of few unknowns: the matrix by differences, solved by elimination.
+//! Linear systems of few unknowns: a dense matrix from differences, solved by elimination.
 //!
-//! −∂R/∂U column by column, as a mean over the points that are added; with the instances of a period,
-//! (shift − ∂R/∂U) ⊗ 1 + ωD, which ties them together. For structures, oscillators and the like.
+//! The matrix is −∂R/∂U, column by column, averaged over the points that are added. For the instances of a period it is
+//! (shift − ∂R/∂U) ⊗ 1 + ωD, which couples the instances. It serves structures, oscillators and other small systems.
 use crate::math::dense::Factors;
 use crate::system::{Field, Period, Placed, Preconditioner, RightHandSide, Shift, System, placed, unknowns};
 
-/// Change of an unknown over its size that derivatives are taken with: the cube root of round-off, for central differences.
+/// Relative change of an unknown in central differences: the cube root of round-off, which balances truncation and
+/// rounding.
 const CHANGE: f64 = 6e-6;
 
-/// A full matrix and its factors.
+/// A dense matrix and its factors.
 pub struct Full {
     fields: Vec<Placed>,
     n: usize,
@@ -20,12 +21,12 @@ pub struct Full {
 }
 
 impl Full {
-    /// An empty one for `system`.
+    /// An empty matrix for `system`.
     pub fn new<S: System>(system: &S, period: Option<Period>) -> Self {
         Self::of_fields(system.fields(), period)
     }
 
-    /// An empty one for the unknowns of `fields`.
+    /// An empty matrix for the unknowns of `fields`.
     pub fn of_fields(fields: &[Field], period: Option<Period>) -> Self {
         let n = unknowns(fields);
         let count = period.map_or(1, |p| p.instances.count());
@@ -33,18 +34,18 @@ impl Full {
         Self { fields, n, period, points: 1.0, matrix: vec![0.0; n * n], factors: None, right: vec![0.0; n * count] }
     }
 
-    /// Begins anew with the mean of `points` matrices.
+    /// Clears the matrix and starts the average of `points` matrices.
     pub fn clear(&mut self, points: usize) {
         self.points = points as f64;
         self.matrix.fill(0.0);
     }
 
-    /// Adds a matrix −∂R/∂U, rows one after another.
+    /// Adds a matrix −∂R/∂U, stored row by row, to the average.
     pub fn add_matrix(&mut self, matrix: &[f64]) {
         self.matrix.iter_mut().zip(matrix).for_each(|(m, a)| *m += a / self.points);
     }
 
-    /// Factors the sum of the matrix, the shift of every row and the derivative in time.
+    /// Adds the shift of every row and the time derivative, and factors the sum.
     pub fn complete(&mut self, shift: &Shift<'_>) {
         let count = self.period.map_or(1, |p| p.instances.count());
         let size = self.n * count;
@@ -66,7 +67,7 @@ impl Full {
         self.factors = Factors::new(size, all);
     }
 
-    /// z = A⁻¹ r; r itself where the matrix is singular.
+    /// Computes z = A⁻¹ r; z = r if the matrix is singular.
     pub fn solve(&mut self, r: &RightHandSide<'_>, z: &mut [f64]) {
         let count = self.period.map_or(1, |p| p.instances.count());
         for at in &self.fields {
@@ -82,12 +83,12 @@ impl Full {
         }
     }
 
-    /// Bytes held.
+    /// Memory in use (bytes).
     pub fn held(&self) -> usize {
         8 * (self.matrix.len() + self.right.len() + self.factors.as_ref().map_or(0, |f| f.len() * f.len()))
     }
 
-    /// Row and place of unknown `k` of one instance among those of all: its row, and the unknown at instance `n`.
+    /// Row of the unknown `k` of one instance, and its index at instance `n` in the state of all instances.
     fn place(&self, k: usize, n: usize, count: usize) -> (usize, usize) {
         let at = self.fields.iter().find(|at| at.unknowns.contains(&k));
         at.map_or((0, 0), |at| {

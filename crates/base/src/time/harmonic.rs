@@ -1,14 +1,16 @@
-//! Harmonic balance: a periodic solution at once, without marching (Hall, Thomas and Clark, AIAA J. 40, 2002).
+//! Harmonic balance: a periodic solution, computed directly without marching (Hall, Thomas and Clark, AIAA J. 40,
+//! 2002).
 //!
-//! The unknowns are the states U_n at the 2N + 1 instances of a period; with ∂/∂t = ωD, exact for N harmonics, they obey
-//! R(U_n) − Σ_j (ωD)_nj U_j = 0, eq. (32). This is a [`System`] like any other: a particle carries the states of all its
-//! instances one after another, and [`super::relax`] drives the residual to zero in pseudo time. Each instance has a frame of
-//! its own: positions x_n on the same lists, velocities w = ωD x with the same operator, so that uniform flow and linear
-//! fields at rest stay what they are. The linear systems are block-circulant about the mean of all linearisations and are
-//! swept harmonic by harmonic ([`crate::math::circulant`]).
+//! The unknowns are the states U_n at the 2N + 1 instances of a period. With ∂/∂t = ωD, which is exact for N harmonics,
+//! they satisfy R(U_n) − Σ_j (ωD)_nj U_j = 0, eq. (32). These equations are a [`System`] like any other: the row of a
+//! particle holds the states of all instances one after another, and [`super::relax`] drives the residual to zero in
+//! pseudo time. Each instance has its own frame, with positions x_n on the same neighbour lists and velocities w = ωD x
+//! from the same operator, so that uniform flow, and linear fields at rest, are preserved. The linear systems are
+//! block-circulant for the average of all linearisations, and are solved by sweeps for each harmonic
+//! ([`crate::math::circulant`]).
 //!
-//! *Oversampling* evaluates R at more instances than there are unknowns, on the interpolated state, and keeps the harmonics
-//! up to N of what it finds: products of high harmonics are then not mistaken for low ones.
+//! *Oversampling* evaluates R at more instances than there are unknowns, on the interpolated state, and keeps its
+//! harmonics up to N, so that products of high harmonics are not aliased into low ones.
 
 use crate::math::fourier::{Instances, Matrix};
 use crate::math::parallel::sweep_rows;
@@ -17,7 +19,7 @@ use crate::system::{
     placed,
 };
 
-/// The equations of a periodic solution.
+/// The equations of a periodic solution of a system.
 pub struct HarmonicBalance<'a, S: System> {
     system: &'a S,
     fields: Vec<Field>,
@@ -26,13 +28,13 @@ pub struct HarmonicBalance<'a, S: System> {
     seen: Instances,
     omega: f64,
     derivative: Matrix,
-    /// The same between the instances where R is evaluated.
+    /// Differentiation matrix between the instances where R is evaluated.
     seen_derivative: Matrix,
     up: Matrix,
     down: Matrix,
 }
 
-/// Storage of an evaluation: state, residual and, once products have been asked for, change of the state at one instance.
+/// Working storage: state, residual and, after the first product, change of the state, all at one instance.
 pub struct Work<S: System> {
     work: S::Work,
     u: Vec<f64>,
@@ -41,8 +43,8 @@ pub struct Work<S: System> {
 }
 
 impl<'a, S: System> HarmonicBalance<'a, S> {
-    /// `system` in periodic motion of angular frequency `omega`, with the harmonics of `held`. R is evaluated at
-    /// `oversample` times as many harmonics (at least one).
+    /// Equations for the periodic motion of `system` with the angular frequency `omega` [rad/time] and the harmonics of
+    /// `held`. R is evaluated with `oversample` times as many harmonics (at least one).
     pub fn new(system: &'a S, held: Instances, omega: f64, oversample: f64) -> Self {
         let harmonics = (oversample.max(1.0) * held.harmonics() as f64).ceil() as usize;
         let seen = Instances::of_harmonics(harmonics);
@@ -54,17 +56,17 @@ impl<'a, S: System> HarmonicBalance<'a, S> {
         Self { system, fields, placing, held, seen, omega, derivative, seen_derivative, up, down }
     }
 
-    /// Instances that hold the solution.
+    /// Instances at which the solution is stored.
     pub fn instances(&self) -> Instances {
         self.held
     }
 
-    /// Times at which R is evaluated.
+    /// Times of the instances at which R is evaluated.
     pub fn times(&self) -> Vec<f64> {
         self.seen.times(self.omega)
     }
 
-    /// A state of all instances that are copies of `u`.
+    /// State of all instances, each equal to `u`.
     pub fn copies(&self, u: &[f64]) -> Vec<f64> {
         let mut all = vec![0.0; u.len() * self.held.count()];
         self.rows_of(self.held, &mut all, |b, one, row| {
@@ -73,14 +75,15 @@ impl<'a, S: System> HarmonicBalance<'a, S> {
         all
     }
 
-    /// The same, led by what is prescribed.
+    /// State of all instances, each equal to `u` with the prescribed motion of its time imposed.
     pub fn led_copies(&self, u: &[f64]) -> Vec<f64> {
         let mut all = self.copies(u);
         self.at_instances(self.held, &mut all, |time, one| self.system.lead(0.0, time, one));
         all
     }
 
-    /// The state `u`, given at the instances of `from`, at those of this one: what departs from where the state is led is interpolated.
+    /// Interpolates the state `u` from the instances of `from` to those of this system. Only the difference from the
+    /// prescribed motion is interpolated.
     pub fn led_resampled(&self, u: &[f64], from: Instances) -> Vec<f64> {
         let mut still = u.to_vec();
         self.at_instances(from, &mut still, |time, one| self.system.lead(time, 0.0, one));
@@ -89,7 +92,7 @@ impl<'a, S: System> HarmonicBalance<'a, S> {
         all
     }
 
-    /// Lets `f` change the state of each instance of `instances` that `u` holds, at its time.
+    /// Applies `f` to the state of each instance in `u`, together with its time.
     fn at_instances(&self, instances: Instances, u: &mut [f64], f: impl Fn(f64, &mut [f64])) {
         let mut one = vec![0.0; self.system.len()];
         for (n, time) in instances.times(self.omega).into_iter().enumerate() {
@@ -99,7 +102,8 @@ impl<'a, S: System> HarmonicBalance<'a, S> {
         }
     }
 
-    /// The state `u`, given at the instances of `from`, at those of this one: exact interpolation, or the part it can hold.
+    /// Interpolates the state `u` from the instances of `from` to those of this system: exact, or truncated to the
+    /// harmonics that these can represent.
     pub fn resampled(&self, u: &[f64], from: Instances) -> Vec<f64> {
         let (old, count) = (from.count(), self.held.count());
         let matrix = from.resample(&self.held);
@@ -114,12 +118,12 @@ impl<'a, S: System> HarmonicBalance<'a, S> {
         all
     }
 
-    /// The state at the phase ωt.
+    /// Writes the state at the phase ωt (rad) to `out`.
     pub fn at_phase(&self, u: &[f64], phase: f64, out: &mut [f64]) {
         self.combine(u, &self.held.weights(phase), out);
     }
 
-    /// Σ_j weights_j U_j.
+    /// Writes the sum Σ_j weights_j U_j over the instances to `out`.
     pub fn combine(&self, u: &[f64], weights: &[f64], out: &mut [f64]) {
         let count = self.held.count();
         for at in placed(self.system.fields()) {
@@ -128,7 +132,7 @@ impl<'a, S: System> HarmonicBalance<'a, S> {
         }
     }
 
-    /// Instance `n` of those that hold the solution, to the bit.
+    /// Copies the state of the stored instance `n` to `out`, without interpolation.
     pub fn instance(&self, u: &[f64], n: usize, out: &mut [f64]) {
         self.instance_of(self.held, u, n, out);
     }
@@ -143,18 +147,18 @@ impl<'a, S: System> HarmonicBalance<'a, S> {
         }
     }
 
-    /// Puts the state `one` where instance `n` of those that hold the solution is.
+    /// Sets the state of the stored instance `n` to `one`.
     pub fn set_instance(&self, one: &[f64], n: usize, u: &mut [f64]) {
         self.rows_of(self.held, u, |b, at, row| row[n * b..(n + 1) * b].copy_from_slice(&one[at..at + b]));
     }
 
-    /// State at instance `n` of those where R is evaluated.
+    /// Writes the state at instance `n` of those where R is evaluated to `out`.
     pub fn look(&self, u: &[f64], n: usize, out: &mut [f64]) {
         if self.held == self.seen { self.instance(u, n, out) } else { self.combine(u, self.up.row(n), out) }
     }
 
-    /// Calls `f(b, one, row)` for each row of all fields: the unknowns of one instance, the first of them in a state of one
-    /// instance, and the row.
+    /// Calls `f(b, one, row)` for each row of all fields, where `b` is the number of unknowns of one instance, `one`
+    /// the index of the first of them in a state of one instance, and `row` the values of the row.
     fn rows_of(&self, instances: Instances, all: &mut [f64], f: impl Fn(usize, usize, &mut [f64]) + Sync) {
         let count = instances.count();
         for at in placed(self.system.fields()) {
@@ -164,20 +168,21 @@ impl<'a, S: System> HarmonicBalance<'a, S> {
         }
     }
 
-    /// The instance of those where R is evaluated that is nearest to instance `n` of those that hold the solution.
+    /// Index of the instance where R is evaluated that is nearest to the stored instance `n`.
     fn beside(&self, n: usize) -> usize {
         let (held, seen) = (self.held.count(), self.seen.count());
         (2 * n * seen + held) / (2 * held) % seen
     }
 
-    /// The instant of phase ωt in the solution `u`, velocities from positions at the instances by the operator of the state.
+    /// Calls `f` with the instant at the phase ωt of the solution `u`; its velocities follow from the positions at all
+    /// instances by the same operator as the time derivative of the state.
     pub fn with_instant<T>(&self, u: &[f64], phase: f64, f: impl FnOnce(&Instant<'_>) -> T) -> T {
         let now = self.coordinates(u, &self.held.weights(phase));
         let weights: Vec<f64> = self.seen.derivative_weights(phase).iter().map(|w| w * self.omega).collect();
         self.instant(&self.coordinates_seen(&self.placing.values(u)), (phase, &now), &weights, f)
     }
 
-    /// The coordinates that place frames, Σ_j weights_j q_j.
+    /// Weighted sum Σ_j weights_j q_j of the coordinates that determine frames.
     fn coordinates(&self, u: &[f64], weights: &[f64]) -> Vec<f64> {
         self.coordinates_of(&self.placing.values(u), weights)
     }
@@ -193,13 +198,13 @@ impl<'a, S: System> HarmonicBalance<'a, S> {
         out
     }
 
-    /// Those at all instances where R is evaluated.
+    /// Coordinates at all instances where R is evaluated.
     fn coordinates_seen(&self, q: &[f64]) -> Vec<Vec<f64>> {
         (0..self.seen.count()).map(|n| self.coordinates_of(q, self.up.row(n))).collect()
     }
 
-    /// The instant of phase ωt at the coordinates `now`, of those at all instances where R is evaluated, and their weights in the
-    /// derivative then.
+    /// Calls `f` with the instant at the phase ωt and the coordinates `now`, given the coordinates at all instances
+    /// where R is evaluated and their weights in the derivative at that phase.
     fn instant<T>(
         &self,
         seen: &[Vec<f64>],
@@ -213,12 +218,12 @@ impl<'a, S: System> HarmonicBalance<'a, S> {
         f(&Instant::formula(phase / self.omega, &terms).with(now))
     }
 
-    /// Phases of the instances where R is evaluated.
+    /// Phases (rad) of the instances where R is evaluated.
     fn phases(&self) -> Vec<f64> {
         self.times().into_iter().map(|t| t * self.omega).collect()
     }
 
-    /// out = −ωD u.
+    /// Computes out = −ωD u.
     fn turned(&self, u: &[f64], out: &mut [f64]) {
         let (derivative, count) = (&self.derivative, self.held.count());
         self.rows_of(self.held, out, |b, one, row| {
@@ -232,7 +237,8 @@ impl<'a, S: System> HarmonicBalance<'a, S> {
         });
     }
 
-    /// Adds `found`, what is found at instance `n` of those where R is evaluated, to the instances that hold the solution.
+    /// Adds `found`, a result at instance `n` of those where R is evaluated, to the stored instances by truncation of
+    /// its harmonics.
     fn gather(&self, n: usize, found: &[f64], du: &mut [f64]) {
         let same = self.held == self.seen;
         self.rows_of(self.held, du, |b, one, row| {
@@ -248,7 +254,7 @@ impl<'a, S: System> HarmonicBalance<'a, S> {
         });
     }
 
-    /// Calls `f` with the state of every instance where R is evaluated.
+    /// Calls `f` with the index and the state of every instance where R is evaluated.
     fn each(&self, u: &[f64], mut f: impl FnMut(usize, &[f64])) {
         let mut one = vec![0.0; self.system.len()];
         for n in 0..self.seen.count() {
@@ -258,7 +264,7 @@ impl<'a, S: System> HarmonicBalance<'a, S> {
     }
 }
 
-/// Rows of `b` unknowns: Σ_j weights_j of those at all instances.
+/// Weighted sum Σ_j weights_j of the instances, for rows of `b` unknowns each.
 fn combine_rows(all: &[f64], b: usize, weights: &[f64], out: &mut [f64]) {
     let count = weights.len();
     sweep_rows(out, b, |i, row| {
@@ -330,7 +336,7 @@ impl<S: System> System for HarmonicBalance<'_, S> {
     }
 
     fn rates(&self, frame: &Self::Frame, u: &[f64], work: &mut Self::Work, rate: &mut [f64]) {
-        // the derivative in time turns states by at most ωN
+        // the time derivative changes the state at a rate of at most ωN
         rate.fill(0.0);
         let mut one = vec![0.0; rate.len()];
         for (n, frame) in frame.iter().enumerate() {
@@ -385,7 +391,7 @@ impl<S: System> System for HarmonicBalance<'_, S> {
     }
 }
 
-/// The preconditioner of a system for all instances of a period: made from the mean of the linearisations of all instances.
+/// Preconditioner for all instances of a period, built from the average of the linearisations at all instances.
 pub struct InTime<P> {
     inner: P,
     instances: usize,

@@ -1,10 +1,11 @@
-//! Small periodic motion about a steady state: (iω − ∂R/∂U) û = b̂.
+//! Small harmonic perturbations of a steady state: (iω − ∂R/∂U) û = b̂.
 //!
-//! What harmonic balance tends to as the amplitude goes to nothing (Hall and Clark 1993, doi:10.2514/3.11706), without the mean and without
-//! iterations of Newton's method: one linear system for each right-hand side, real and imaginary part beside one another. It begins with the
-//! best combination of the solutions that are known. Products with ∂R/∂U are exact ([`jvp`](crate::system::System::jvp)),
-//! those that build the Krylov space hasty differences; the preconditioner is that of harmonic balance with one harmonic. Solves are
-//! refined: the residual is found anew with exact products until it is small.
+//! This is the limit of harmonic balance for a vanishing amplitude (Hall and Clark 1993, doi:10.2514/3.11706), without
+//! the mean and without Newton iterations: one linear system for each right-hand side, with real and imaginary parts
+//! stored together. The initial guess is the best combination of the known solutions. Products with ∂R/∂U are exact
+//! ([`jvp`](crate::system::System::jvp)); those that build the Krylov space are one-sided differences. The
+//! preconditioner is that of harmonic balance with one harmonic. Solves are refined iteratively: the residual is
+//! recomputed with exact products until it is small.
 use super::recycled::Recycled;
 use crate::math::fourier::Instances;
 use crate::math::krylov::{Gmres, Goal, Numbers};
@@ -12,19 +13,19 @@ use crate::math::parallel::sweep_slots;
 use crate::math::reduce::norm;
 use crate::system::{Hierarchy, Implicit, Period, Placed, Preconditioner, Reach, RightHandSide, Shift, placed};
 
-/// Change of the state in hasty products, over its size.
+/// Relative change of the state in one-sided difference products.
 const HASTY: f64 = 1e-8;
-/// Reduction asked of each solve, and rounds of refinement.
+/// Relative reduction of the residual in each GMRES solve, and the number of refinements.
 const ROUND: f64 = 1e-5;
 const ROUNDS: usize = 6;
-/// Basis vectors of a round.
+/// Maximum number of basis vectors of one GMRES solve.
 const BASIS: usize = 100;
-/// Part of what is asked for that a round goes on to.
+/// Fraction of the tolerance to which the last solve reduces the residual.
 const MARGIN: f64 = 0.7;
-/// Courant number of the preconditioner.
+/// Courant number of the preconditioner; it is large because there is no pseudo time.
 const FAR: f64 = 1e8;
 
-/// A system that is looked at about a steady state.
+/// A system linearised about a steady state.
 pub struct Linear<'a, S: Implicit> {
     system: &'a S,
     frame: S::Frame,
@@ -32,30 +33,30 @@ pub struct Linear<'a, S: Implicit> {
     state: Vec<f64>,
     size: f64,
     rates: Vec<f64>,
-    /// Local time of each unknown: what residuals are measured in.
+    /// Local time of each unknown, with which residuals are multiplied.
     scale: Vec<f64>,
     gmres: Gmres,
     moved: Vec<f64>,
     found: Vec<f64>,
-    /// R at the state.
+    /// R at the steady state.
     rest: Vec<f64>,
     recycled: Recycled,
-    /// Storage of the preconditioner: parts of one harmonic, and all instances before and after it.
+    /// Storage of the preconditioner: components of one harmonic, and all instances before and after the solve.
     parts: Vec<f64>,
     instances: [Vec<f64>; 2],
 }
 
-/// How a solve ended.
+/// Result of a solve.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Ended {
-    /// Linear iterations.
+    /// Number of linear iterations.
     pub iterations: usize,
-    /// Residual over right-hand side.
+    /// Ratio of the residual to the right-hand side.
     pub left: f64,
 }
 
 impl<'a, S: Implicit> Linear<'a, S> {
-    /// `system` in the frame `frame` at the state `state`, evaluated with the storage `work`.
+    /// Linearises `system` at the state `state` in the frame `frame`, with the working storage `work`.
     pub fn new(system: &'a S, frame: S::Frame, state: &[f64], mut work: S::Work) -> Self {
         let rows = crate::system::rows(system.fields());
         let mut rates = vec![0.0; rows];
@@ -85,12 +86,12 @@ impl<'a, S: Implicit> Linear<'a, S> {
         }
     }
 
-    /// The state.
+    /// The steady state.
     pub fn state(&self) -> &[f64] {
         &self.state
     }
 
-    /// out = ∂R/∂U v, exact or by a difference to one side, which takes half as long.
+    /// Computes out = ∂R/∂U v, exactly or by a one-sided difference, which takes half the time.
     fn product(&mut self, v: &[f64], exact: bool, out: &mut [f64]) {
         if exact {
             return self.system.jvp(&self.frame, [&self.state, v], &mut self.work, out);
@@ -106,7 +107,7 @@ impl<'a, S: Implicit> Linear<'a, S> {
         sweep_slots(out, |i, o| *o = (there[i] - rest[i]) / step);
     }
 
-    /// out = (iω − ∂R/∂U) x, real parts before imaginary ones, in local times.
+    /// Computes out = (iω − ∂R/∂U) x times the local time, real parts before imaginary parts.
     fn shifted(&mut self, omega: f64, (x, exact): (&[f64], bool), out: &mut [f64]) {
         let n = self.state.len();
         let (re, im) = x.split_at(n);
@@ -118,8 +119,9 @@ impl<'a, S: Implicit> Linear<'a, S> {
         sweep_slots(out_im, |i, o| *o = scale[i] * (-*o + omega * re[i]));
     }
 
-    /// Solves (iω − ∂R/∂U) x = b for each of `right`, real parts before imaginary ones, to the relative residual `tolerance`; `plan` is
-    /// the hierarchy of the preconditioner. `None` where `stop`, which is asked in every iteration, says so before all are found.
+    /// Solves (iω − ∂R/∂U) x = b for each right-hand side in `right`, real parts before imaginary parts, to the
+    /// relative residual `tolerance`; `plan` describes the levels of the preconditioner. Returns `None` if `stop`,
+    /// which is called in every iteration, returns true before all solutions are found.
     pub fn solve(
         &mut self,
         omega: f64,
@@ -149,7 +151,8 @@ impl<'a, S: Implicit> Linear<'a, S> {
         }
         self.recycled.begin(omega, &scale, (&mut x, &mut r));
         if omega == 0.0 {
-            // both parts stand alone: where one has no right-hand side, what solutions of other frequencies leave of it is an error
+            // the real and imaginary parts are independent: a part without right-hand side must not keep errors of
+            // other frequencies
             for part in [0..unknowns, unknowns..n].into_iter().filter(|part| b[part.clone()].iter().all(|b| *b == 0.0))
             {
                 x[part.clone()].fill(0.0);
@@ -158,7 +161,7 @@ impl<'a, S: Implicit> Linear<'a, S> {
         }
         let mut ended = Ended { iterations: 0, left: norm(&r) / whole };
         for round in 0..ROUNDS {
-            // what is told is the residual of a product, not that of a combination
+            // the reported residual is that of an exact product, not that of a combination
             if round > 0 && ended.left <= tolerance {
                 break;
             }
@@ -183,7 +186,8 @@ impl<'a, S: Implicit> Linear<'a, S> {
         Some((x, ended))
     }
 
-    /// Sets `z` to the solution for the right-hand side `r`, which is storage afterwards, until `tolerance` of it is left; the iterations.
+    /// Sets `z` to the solution for the right-hand side `r` until the fraction `tolerance` of it remains, and returns
+    /// the number of iterations; `r` is used as storage.
     fn correct(
         &mut self,
         tolerance: f64,
@@ -209,17 +213,17 @@ impl<'a, S: Implicit> Linear<'a, S> {
     }
 }
 
-/// What serves all right-hand sides of one frequency.
+/// Data common to all right-hand sides of one frequency.
 struct Problem<'p, S: Implicit> {
     waves: &'p Waves,
     preconditioner: S::Preconditioner,
     stop: &'p dyn Fn() -> bool,
 }
 
-/// One harmonic at the instances of a period.
+/// Transformation between one harmonic and the instances of a period.
 struct Waves {
     period: Period,
-    /// Cosine and sine at each instance.
+    /// Cosine and sine of the phase at each instance.
     phase: Vec<[f64; 2]>,
 }
 
@@ -230,7 +234,8 @@ impl Waves {
         Self { period: Period { instances, omega, mean: false }, phase }
     }
 
-    /// What harmonic parts, given in local times, are at the instances: Re(v̂ e^{iωt}).
+    /// Computes the values at the instances, Re(v̂ e^{iωt}), from harmonic components that are multiplied by local
+    /// times.
     fn spread<S: Implicit>(&self, system: &S, (v, scale): (&Numbers<'_>, &[f64]), parts: &mut [f64], all: &mut [f64]) {
         let n = system.len();
         v.each(0, parts, |x, r| *x = f64::from(r));
@@ -246,7 +251,7 @@ impl Waves {
         });
     }
 
-    /// The harmonic parts of what is at the instances.
+    /// Computes the harmonic components of the values at the instances.
     fn gather<S: Implicit>(&self, system: &S, all: &[f64], out: &mut [f64]) {
         let (re, im) = out.split_at_mut(system.len());
         rows(system, |at, b| {
@@ -260,7 +265,7 @@ impl Waves {
     }
 }
 
-/// Calls `f(first unknown, unknowns)` for every row of all fields.
+/// Calls `f(index of the first unknown, number of unknowns)` for every row of all fields.
 fn rows<S: Implicit>(system: &S, mut f: impl FnMut(usize, usize)) {
     for Placed { field, unknowns, .. } in placed(system.fields()) {
         (0..field.rows).for_each(|i| f(unknowns.start + i * field.block, field.block));

@@ -1,4 +1,4 @@
-//! Integrators: they know a [`System`] and nothing of what it means.
+//! Integrators in time, for any [`System`]; they know nothing of its physics.
 pub mod control;
 pub mod dual;
 pub mod explicit;
@@ -19,125 +19,127 @@ pub mod vibration;
 use crate::system::{Reach, System};
 use relax::Resume;
 
-/// What one call of an integrator did.
+/// Result of one step of an integrator.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Step {
-    /// Iterations or steps since the start.
+    /// Number of iterations or steps since the start.
     pub iteration: u32,
-    /// Physical time.
+    /// Physical time at the end of the step; 0 in a relaxation.
     pub time: f64,
-    /// Courant number used.
+    /// Courant number of the step.
     pub cfl: f64,
-    /// Size of the residual over its size at the start.
+    /// Ratio of the residual norm to its initial value.
     pub residual: f64,
-    /// Linear iterations spent.
+    /// Total number of linear iterations.
     pub linear: u32,
 }
 
-/// What a march needs, beside the state, to go on where it stopped.
+/// Data, beside the state, that a march needs to continue.
 #[derive(Clone, Debug, Default)]
 pub struct Past {
-    /// Time reached.
+    /// Time reached so far.
     pub time: f64,
-    /// Steps taken.
+    /// Number of steps taken.
     pub iteration: u32,
-    /// Length of the step before.
+    /// Length of the last step.
     pub last: f64,
     /// Length of the next step.
     pub next: f64,
-    /// State one step ago; empty at the start, and for methods that need none.
+    /// State one step ago; empty at the start, and for methods that do not need it.
     pub before: Vec<f64>,
-    /// State two steps ago, where all steps are of one length; else empty.
+    /// State two steps ago if all steps have the same length, else empty.
     pub older: Vec<f64>,
-    /// How far the linear systems of the last steps reached.
+    /// Range of coupling of the linear systems of the last steps.
     pub reach: Reach,
-    /// Steps for which the preconditioner at hand has served; 0 when the next step makes its own.
+    /// Number of steps in which the current preconditioner has been used; 0 if the next step builds a new one.
     pub served: u32,
     /// Time at the end of the first of those steps.
     pub made: f64,
-    /// Steps that did not reach their goal.
+    /// Number of steps that did not reach the required reduction of the residual.
     pub unconverged: u32,
-    /// Times a step was halved because its equations could not be solved.
+    /// Number of times that a step was halved because its equations could not be solved.
     pub halved: u32,
 }
 
 impl Past {
-    /// How far the march has come.
+    /// Progress of the march.
     pub fn mark(&self) -> Mark {
         Mark { iteration: self.iteration, time: self.time, last: self.last, residual: 1.0, resting: 0 }
     }
 }
 
-/// What an integrator must remember, beside the state, to go on to the same bits.
+/// Data, beside the state, that an integrator needs to continue with identical results.
 #[derive(Clone, Debug)]
 pub enum Memory {
-    /// A relaxation.
+    /// Data of a relaxation.
     Relaxation(Resume),
-    /// A march.
+    /// Data of a march.
     March(Past),
 }
 
-/// How far an integrator has come.
+/// Progress of an integrator.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Mark {
-    /// Iterations or steps since the start.
+    /// Number of iterations or steps since the start.
     pub iteration: u32,
-    /// Physical time; zero in a relaxation.
+    /// Physical time; 0 in a relaxation.
     pub time: f64,
-    /// Length of the last step in time; zero before the first one and in a relaxation.
+    /// Length of the last time step; 0 before the first one and in a relaxation.
     pub last: f64,
-    /// Size of the residual over its first value, or that in the last step.
+    /// Ratio of the residual norm to its initial value, at present or at the end of the last time step.
     pub residual: f64,
-    /// Iterations of Newton's method on a steady state since the residual was last smallest.
+    /// Number of Newton iterations on a steady state since the last minimum of the residual.
     pub resting: u32,
 }
 
-/// What an integrator has spent and holds.
+/// Computational cost of an integrator so far.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Cost {
-    /// Evaluations of the residual since it was made.
+    /// Number of evaluations of the residual since the integrator was created.
     pub evaluations: u64,
-    /// Linear iterations so far.
+    /// Total number of linear iterations.
     pub linear: u32,
-    /// Iterations within the last step.
+    /// Number of iterations within the last step.
     pub inner: u32,
-    /// Bytes held.
+    /// Memory in use (bytes).
     pub bytes: usize,
-    /// Steps in time that did not reach their goal.
+    /// Number of time steps that did not reach the required reduction of the residual.
     pub unconverged: u32,
-    /// Times a step in time was halved because its equations could not be solved.
+    /// Number of times that a time step was halved because its equations could not be solved.
     pub halved: u32,
 }
 
-/// Where an integrator stands, for those who watch.
+/// View of the current solution of an integrator, for observers.
 pub struct Standing<'a, S: System> {
-    /// What is integrated.
+    /// The system that is integrated.
     pub system: &'a S,
     /// Frame of the state.
     pub frame: &'a S::Frame,
-    /// Storage that may be used to look at it.
+    /// Working storage, which observers may use for evaluations.
     pub work: &'a mut S::Work,
-    /// State.
+    /// State that belongs to the frame.
     pub state: &'a [f64],
 }
 
-/// A method that goes on step by step until it is finished: a relaxation, a march, or a relaxation of all instances of a
-/// period. Who drives it need not know which.
+/// A method that proceeds in steps until it is finished: a relaxation, a march, or a relaxation of all instances of a
+/// period. Callers do not need to know which.
 pub trait Integrator<S: System> {
-    /// One step, from a state that [`check`](Self::check) lets pass to another such; after an error the state is the last good one.
+    /// Computes one step from a state that passes [`check`](Self::check) to another such state. After an error, the
+    /// state is the last accepted one.
     fn advance(&mut self) -> Result<Step, TimeError>;
-    /// True when the goal is reached.
+    /// True if the goal is reached.
     fn finished(&self) -> bool;
-    /// How far it has come.
+    /// Progress so far.
     fn mark(&self) -> Mark;
-    /// Where it stands.
+    /// View of the current solution.
     fn standing(&mut self) -> Standing<'_, S>;
-    /// What a later run needs beside the state.
+    /// Data, beside the state, that a later run needs to continue.
     fn memory(&self) -> Memory;
-    /// What it has spent.
+    /// Computational cost so far.
     fn cost(&self) -> Cost;
-    /// Refuses to begin at a state that is not physical: numbers that are none, densities and pressures that are not positive. Goals and
-    /// norms are compared, and a comparison with what is no number holds or fails as it happens to be written. Steps check their own ends.
+    /// Returns an error if the initial state is not physical: values that are NaN or infinite, or densities and
+    /// pressures that are not positive. The comparisons in norms and goals are not reliable for NaN, so that such a
+    /// state must be excluded beforehand. Steps check their own results.
     fn check(&mut self) -> Result<(), TimeError> {
         let iteration = self.mark().iteration;
         let Standing { system, frame, state, .. } = self.standing();
@@ -145,36 +147,37 @@ pub trait Integrator<S: System> {
     }
 }
 
-/// What may help where a state is not physical.
-const UNSOUND: &str = "the state that this goes on from is damaged: begin the run again";
+/// Hint for a state that is not physical.
+const UNSOUND: &str = "the initial state of this computation is damaged: start the run again from the beginning";
 
-/// What may help where motion leaves a particle without a good cloud.
-pub const CROWDED: &str = "bodies come too close to one another or to a side of the domain, or move too far for the particles \
-                       between them; give them more room, less motion, or `motion.particles = \"rigid\"` if there is one body";
+/// Hint for motion that leaves a particle without suitable neighbours.
+pub const CROWDED: &str = "bodies come too close to one another or to a boundary of the domain, or move too far for the \
+                       particles between them; increase their distance, reduce their motion, or set \
+                       `motion.particles = \"rigid\"` if there is only one body";
 
-/// Why an integration stopped early.
+/// Error that ends an integration.
 #[derive(Debug, thiserror::Error)]
 pub enum TimeError {
     /// A state became unphysical.
     #[error("{fault}; last step {iteration}\nhint: {hint}")]
     Fault {
-        /// Where and why.
+        /// Row, position and description of the fault.
         fault: crate::system::Fault,
-        /// Step at which it happened.
+        /// Index of the last step.
         iteration: u32,
-        /// What may help.
+        /// Suggested remedy.
         hint: &'static str,
     },
-    /// The steady relaxation cannot get on.
+    /// The relaxation to a steady state cannot continue.
     #[error(
         "the relaxation stopped at iteration {iteration}: every step down to a Courant number of {cfl:.1e} was rejected; the largest residual is at {place}\nhint: lower `cfl` (in `[time.steady]`, `[time.dual]` or `[time.harmonics]`), take shorter steps in a march, or refine the cloud there"
     )]
     Stalled {
-        /// Iteration.
+        /// Iteration at which the relaxation stopped.
         iteration: u32,
-        /// Smallest Courant number tried.
+        /// Minimum Courant number tried.
         cfl: f64,
-        /// Where the largest scaled residual is: a particle and its place, or a row of another field.
+        /// Location of the maximum scaled residual: a particle with its position, or a row of another field.
         place: String,
     },
 }

@@ -1,17 +1,19 @@
-//! The size of a residual over several fields.
+//! Norm of a residual over several fields.
 //!
-//! Each row is measured by the change that its residual would make in one local time; a field by the root mean square over its
-//! rows; several fields together so that each counts by what it was at first: the residual of all of them then falls together.
+//! The residual of a row is multiplied by its local time; the norm of a field is the root mean square over its rows.
+//! Fields are weighted by the inverse of their initial norms, so that the residuals of all fields must fall together.
 use crate::math::reduce::sum;
 use crate::system::{Field, Placed, placed};
 
-/// Least first residual of a field in units of its unknowns: below it a field counts as if it had nothing to do.
+/// Minimum initial residual of a field in units of its unknowns: a field with a smaller one is regarded as solved.
 const NOTHING: f64 = 1e-10;
-/// Least weight of a field in its own units. A body that swings changes the mean particle of a large cloud little: counted in its
-/// own units, its motion would hide that the gas is not solved. In the first step from rest only the body moves, and counts.
+/// Minimum weight of a field in its own units. A moving body changes the average particle of a large cloud only little;
+/// with weight 1, its residual would mask an unconverged gas. In the first step from rest only the body moves, and it
+/// determines the norm.
 const LEAST: f64 = 1e-3;
 
-/// Sum over the rows of all fields of the squares of their measured residuals times `scale`, over the rows of the first field.
+/// Sum over all rows of the squared residuals (of the components in the norm) times `scale`, divided by the number of
+/// rows of the first field.
 pub(super) fn norm(fields: &[Field], r: &[f64], scale: &[f64]) -> f64 {
     let Some(first) = fields.first() else { return 0.0 };
     let total: f64 = placed(fields)
@@ -23,7 +25,7 @@ pub(super) fn norm(fields: &[Field], r: &[f64], scale: &[f64]) -> f64 {
     (total / (first.rows * first.instances) as f64).sqrt()
 }
 
-/// Sum of squares of the measured unknowns of row `i`.
+/// Sum of the squared residuals of row `i`, of the components in the norm.
 #[inline(always)]
 fn square(field: &Field, r: &[f64], i: usize) -> f64 {
     let (n, width) = (field.block, field.block / field.instances);
@@ -31,8 +33,8 @@ fn square(field: &Field, r: &[f64], i: usize) -> f64 {
     row.map(|r| r[..field.measured].iter().map(|r| r * r).sum::<f64>()).sum::<f64>()
 }
 
-/// Multiplies the local times of all fields but the first by what makes each field count as the first does, where `residuals`
-/// are those that the fields have at first.
+/// Multiplies the local times of all fields after the first by the factor that gives each field the weight of the
+/// first, for the initial `residuals` of the fields.
 pub(super) fn weigh(fields: &[Field], scale: &mut [f64], residuals: &[&[f64]]) {
     let size = |at: &Placed, scale: &[f64]| {
         let count = (at.field.rows * at.field.instances) as f64;

@@ -1,14 +1,15 @@
 //! Ordinary differential equations du/dt = f(t, u) as a system: oscillators, circuits, models of few unknowns.
 //!
-//! Every integrator takes them as it takes a gas; the linear systems of implicit ones are solved with the full matrix.
+//! Every integrator accepts them as it accepts a gas; implicit integrators solve the linear systems with the dense
+//! matrix.
 use super::full::Full;
 use crate::math::reduce::largest_size;
 use crate::system::{Fault, Field, Hierarchy, Implicit, Instant, Name, Period, System};
 
-/// Change of an unknown, in its own unit, that counts as much as a relative change of one thousandth of a density.
+/// Relative change of a density to which a change of an unknown by one unit is equivalent.
 const LARGE: f64 = 1e-3;
 
-/// The equations, all in one row.
+/// Ordinary differential equations, all in one row.
 pub struct Ordinary<F> {
     fields: [Field; 1],
     rate: f64,
@@ -16,8 +17,8 @@ pub struct Ordinary<F> {
 }
 
 impl<F: Fn(f64, &[f64], &mut [f64]) + Sync> Ordinary<F> {
-    /// `n` equations: `f(t, u, du)` writes du/dt. `rate` is the fastest rate at which the unknowns change on their own, which
-    /// explicit steps and pseudo time are measured by.
+    /// A system of `n` equations, where `f(t, u, du)` writes du/dt. `rate` [1/time] is the maximum rate at which the
+    /// unknowns change by themselves; it determines explicit steps and pseudo-time steps.
     pub fn new(n: usize, rate: f64, f: F) -> Self {
         Self { fields: [Field::new(Name::Other("unknowns"), 1, n)], rate, f }
     }

@@ -1,25 +1,27 @@
-//! The life of a preconditioner: made, kept while it serves, dropped.
+//! Management of a preconditioner: when it is built, reused and discarded.
 //!
-//! A short step in time feels its neighbours only ([`Reach::Near`]); where linear solves grow long all the same, the systems
-//! reach across the cloud ([`Reach::Far`]) for a while. One that was made for a step in time goes on to serve the steps after
-//! it, as long as solves stay short and Newton's method falls well.
+//! A short time step couples neighbours only ([`Reach::Near`]). If linear solves nevertheless need many iterations, the
+//! systems are treated as globally coupled ([`Reach::Far`]) for some steps. A preconditioner that was built for one
+//! time step is reused in the following ones as long as linear solves need few iterations and Newton's method converges
+//! well.
 use crate::system::{Implicit, Preconditioner, Reach, RightHandSide, Shift};
 
-/// Iterations of a linear solve up to which its preconditioner goes on to serve in the next step.
+/// Maximum number of iterations of a linear solve for which its preconditioner is reused in the next step.
 const EASY: usize = 4;
-/// Iterations after which a linear solve that should reach near only is given up: its step is taken, and those after it reach far.
+/// Number of iterations after which a linear solve with local coupling is stopped: its step is used, and later solves
+/// assume global coupling.
 const MOST_NEAR: usize = 16;
 
-/// A preconditioner and how it serves.
+/// A preconditioner with a record of its use.
 pub(super) struct Preconditioning<P> {
     inner: P,
-    /// It was made for this step in time or one not long before, and still serves.
+    /// True if it was built for this time step or a recent one, and remains in use.
     kept: bool,
-    /// It was made within an iteration.
+    /// True if it was built within an iteration.
     remade: bool,
-    /// Iterations of the longest linear solve since the step in time began.
+    /// Number of iterations of the longest linear solve since the start of the time step.
     longest: usize,
-    /// Linear systems of steps in time reach across the cloud.
+    /// Range of coupling of the linear systems of time steps.
     pub(super) reach: Reach,
 }
 
@@ -28,47 +30,47 @@ impl<P> Preconditioning<P> {
         Self { inner, kept: false, remade: false, longest: 0, reach: Reach::Near }
     }
 
-    /// Has the next iteration make it.
+    /// Discards the preconditioner, so that the next iteration builds a new one.
     pub(super) fn drop(&mut self) {
         (self.kept, self.remade) = (false, false);
     }
 
-    /// It no longer fits: a step was refused, or the residual fell badly.
+    /// Discards the preconditioner because a step was rejected or the residual rose.
     pub(super) fn give_up(&mut self) {
         self.kept = false;
     }
 
-    /// A step in time begins.
+    /// Resets the record at the start of a time step.
     pub(super) fn begin_step(&mut self) {
         self.longest = 0;
     }
 
-    /// True when it need not be made for the next iteration.
+    /// True if the next iteration can use the existing preconditioner.
     pub(super) fn is_kept(&self) -> bool {
         self.kept
     }
 
-    /// True while one that was made before the step began serves.
+    /// True while a preconditioner from before the start of the step is in use.
     pub(super) fn still_serves(&self) -> bool {
         self.kept && !self.remade && self.longest <= EASY
     }
 
-    /// Greatest number of iterations of a linear solve of this reach.
+    /// Maximum number of iterations of a linear solve with this range of coupling.
     pub(super) fn most(reach: Reach) -> usize {
         if reach == Reach::Near { MOST_NEAR } else { usize::MAX }
     }
 
-    /// Learns how long a linear solve took.
+    /// Records the number of iterations of a linear solve.
     pub(super) fn served(&mut self, reach: Reach, iterations: usize) {
         if reach == Reach::Near && iterations == MOST_NEAR {
-            // one that was made for another step is first made anew
+            // a preconditioner of another step is rebuilt before the coupling is changed
             self.reach = if self.remade { Reach::Far } else { Reach::Near };
             self.kept = false;
         }
         self.longest = self.longest.max(iterations);
     }
 
-    /// Makes it before a step in time begins, at `at`.
+    /// Builds the preconditioner for `at`, before a time step begins.
     pub(super) fn make_ahead<S: Implicit<Preconditioner = P>>(
         &mut self,
         system: &S,
@@ -82,7 +84,7 @@ impl<P> Preconditioning<P> {
         self.kept = true;
     }
 
-    /// Makes it within an iteration; `keep`: it may go on to serve.
+    /// Builds the preconditioner within an iteration; `keep` allows later iterations to reuse it.
     pub(super) fn make<S: Implicit<Preconditioner = P>>(
         &mut self,
         system: &S,

@@ -1,41 +1,43 @@
-//! Solutions of (iω − A) x = b that are known, to begin the next solve with.
+//! Recycled solutions of (iω − A) x = b, which give the initial guess of the next solve.
 //!
-//! What a matrix makes of a solution is known once that is found, so that at another frequency or for another right-hand side the best
-//! combination of the solutions at hand, min over c of |b − Σ_k c_k (iω − A) x_k|, costs sums and no product with A: a reduced basis
-//! (Galerkin by least squares; Parks, de Sturler, Mackey, Johnson and Maiti 2006, doi:10.1137/040607277, recycle spaces in the same way).
+//! When a solution is known, its product with A is known as well. At another frequency or for another right-hand side,
+//! the best combination of known solutions, min over c of |b − Σ_k c_k (iω − A) x_k|, therefore needs inner products
+//! but no product with A. This is a reduced basis with a least-squares projection (Parks, de Sturler, Mackey, Johnson
+//! and Maiti 2006, doi:10.1137/040607277, recycle Krylov subspaces in the same way).
 use std::ops::Range;
 
 use crate::math::dense::Factors;
 use crate::math::parallel::sweep_chunks;
 use crate::math::reduce::sum_each;
 
-/// Solutions that are kept at least, and at most.
+/// Minimum and maximum number of stored solutions.
 const KEPT: [usize; 2] = [8, 24];
-/// Part of a squared size that is added to it, so that solutions which depend on one another do no harm.
+/// Relative regularisation of the squared norms, so that linearly dependent solutions do no harm.
 const RIDGE: f64 = 1e-12;
 
-/// A solution and what A makes of it, real parts before imaginary ones, as residuals are measured.
+/// A solution and its product with A, real parts before imaginary parts, in the norm of residuals.
 #[derive(Debug)]
 struct Known {
     x: Vec<f32>,
     image: Vec<f32>,
 }
 
-/// Solutions that are known; the oldest go first.
+/// Stored solutions; the oldest are removed first.
 #[derive(Debug, Default)]
 pub(super) struct Recycled {
     all: Vec<Known>,
-    /// Right-hand sides of a frequency.
+    /// Number of right-hand sides of a frequency.
     sides: usize,
 }
 
 impl Recycled {
-    /// From now on each frequency has so many right-hand sides: the solutions of one frequency begin those of the next.
+    /// Sets the number of right-hand sides of each frequency: the solutions of one frequency give the initial guesses
+    /// of the next.
     pub(super) fn expect(&mut self, sides: usize) {
         self.sides = sides;
     }
 
-    /// Keeps the solution `x` and `image`, what A makes of it, in local times.
+    /// Stores the solution `x` and its product with A, `image`, multiplied by local times.
     pub(super) fn keep(&mut self, x: &[f64], image: impl Fn(usize) -> f64) {
         let [least, most] = KEPT;
         if self.all.len() >= self.sides.clamp(least, most) {
@@ -46,7 +48,8 @@ impl Recycled {
         self.all.push(Known { x: x.iter().map(|x| single(*x)).collect(), image });
     }
 
-    /// Sets `x` to the best combination, and takes what the system makes of it from `r`, which is the right-hand side; `scale` are local times.
+    /// Sets `x` to the best combination of stored solutions and subtracts its product with the system from the
+    /// right-hand side `r`; `scale` are local times.
     pub(super) fn begin(&self, omega: f64, scale: &[f64], (x, r): (&mut [f64], &mut [f64])) {
         let (m, n) = (self.all.len(), scale.len());
         let Some(c) = self.coefficients(omega, scale, r).filter(|_| m > 0) else { return };
@@ -74,7 +77,7 @@ impl Recycled {
         }
     }
 
-    /// c; `None` where the solutions depend on one another.
+    /// Coefficients c of the best combination; `None` if the solutions are linearly dependent.
     fn coefficients(&self, omega: f64, scale: &[f64], b: &[f64]) -> Option<Vec<[f64; 2]>> {
         let (m, n) = (self.all.len(), scale.len());
         let width = m + 1;
@@ -101,7 +104,8 @@ impl Recycled {
             true => [sums[2 * (k * width + l)], sums[2 * (k * width + l) + 1]],
             false => [sums[2 * (l * width + k)], -sums[2 * (l * width + k) + 1]],
         };
-        // with sizes of one, real and imaginary parts of c one after another: |Σ_k c_k w_k − b|² is least where G c = g
+        // with normalised solutions and the real parts of c before the imaginary parts, |Σ_k c_k w_k − b|² is minimal
+        // for G c = g
         let size: Vec<f64> = (0..m).map(|k| entry(k, k)[0].sqrt().max(f64::MIN_POSITIVE)).collect();
         let mut matrix = vec![0.0; 4 * m * m];
         let mut right = vec![0.0; 2 * m];
@@ -124,7 +128,7 @@ impl Recycled {
 }
 
 impl Known {
-    /// Real and imaginary part of (iω − A) x at unknown number `i`.
+    /// Real and imaginary part of (iω − A) x for the unknown `i`.
     #[inline(always)]
     fn shifted(&self, omega: f64, scale: &[f64], i: usize) -> [f64; 2] {
         let (n, s) = (scale.len(), omega * scale[i]);

@@ -1,10 +1,11 @@
 //! Relaxation to a steady state, R(u) = 0.
 //!
-//! Newton's method on the pseudo-time step (1/Δτ + J) δu = R(u), J = −∂R/∂u, with Δτ = CFL/rate particle by particle. J v is
-//! a difference of residuals; GMRES solves, preconditioned by sweeps over the first-order linearisation on a hierarchy of
-//! levels (Knoll and Keyes 2004). The Courant number follows the residual (Mulder and van Leer 1985). Steps that make a
-//! state unphysical or the residual jump are taken back and tried again with a smaller one. The same loop with the linear
-//! solve replaced by the sweeps alone is the LU-SGS method; with neither it is explicit Runge-Kutta with local steps.
+//! Newton's method in pseudo time, (1/Δτ + J) δu = R(u) with J = −∂R/∂u and a local time step Δτ = CFL/rate for each
+//! particle. The product J v is a difference of residuals. GMRES solves the linear system, preconditioned by multilevel
+//! sweeps over the first-order linearisation (Knoll and Keyes 2004). The Courant number follows the residual (Mulder
+//! and van Leer 1985). A step that leads to an unphysical state or to a jump of the residual is rejected and repeated
+//! with a smaller Courant number. If the preconditioner alone replaces the linear solve, this is the LU-SGS method;
+//! without either, it is the explicit Runge-Kutta method with local time steps.
 mod line_search;
 mod newton;
 
@@ -22,66 +23,69 @@ use crate::math::parallel::{sweep, sweep_rows};
 use crate::math::reduce::largest;
 use crate::system::{Fault, Hierarchy, Implicit, Instant, Reach, Shift, placed, rows};
 
-/// Drop of the residual below which the flow counts as settled.
+/// Ratio of the residual to its first value below which the flow pattern is regarded as developed, so that Newton's
+/// method can begin.
 const SETTLED: f64 = 3e-3;
-/// Drop of the residual after which sweeps alone are over as soon as they make it grow by more than [`WORN_RISE`]: near the solution
-/// the first-order operator overshoots, and leaves a worse state the longer it goes on.
+/// Ratio of the residual to its first value below which the phase of sweeps alone ends as soon as they increase the
+/// residual by more than [`WORN_RISE`]. Near the solution, the first-order operator overshoots, and each further sweep
+/// makes the state worse.
 const NEAR: f64 = 2e-2;
 const WORN_RISE: f64 = 1.5;
-/// Iterations without a new smallest residual after which the flow counts as settled.
+/// Number of iterations without a new minimum of the residual after which the flow pattern is regarded as developed.
 const PATIENCE: u32 = 10;
-/// Residual after a step of sweeps alone over the smallest before it, beyond which they are too slow at their greatest Courant number.
+/// Ratio of the residual after a step of sweeps alone to the minimum before it, above which sweeps at their maximum
+/// Courant number are regarded as too slow.
 const SLOW: f64 = 0.93;
-/// Fewest iterations of sweeps alone before patience is counted.
+/// Minimum number of iterations of sweeps alone before iterations without progress are counted.
 const SHORTEST_START: u32 = 20;
-/// Courant number below which Newton's method is given up for a while.
+/// Courant number below which Newton's method is suspended and sweeps alone continue.
 const LOST_CFL: f64 = 5.0;
-/// Courant number with which either phase begins.
+/// Courant number at the start of either phase.
 const RESTART_CFL: f64 = 20.0;
-/// Greatest Courant number of sweeps alone.
+/// Maximum Courant number of sweeps alone.
 const START_CFL_MAX: f64 = 200.0;
-/// Courant number below which the relaxation gives up.
+/// Courant number below which the relaxation stops with an error.
 const SMALLEST_CFL: f64 = 1e-3;
-/// Smallest fraction of a step that is worth taking.
+/// Minimum fraction of a step that is accepted.
 const SMALLEST_FRACTION: f64 = 0.05;
 /// Courant number of the explicit method.
 const EXPLICIT_CFL: f64 = 1.5;
-/// Scaled residual that is round-off: a relative change of the density in one local time.
+/// Scaled residual at round-off level: a relative change of the density within one local time.
 const ROUND_OFF: f64 = 1e-15;
-/// Scaled first residual that is round-off of the sums over neighbours: no flow is sought from there.
+/// Scaled initial residual at the round-off level of the sums over neighbours: the initial state is already steady.
 const STEADY_ALREADY: f64 = 1e-13;
-/// Courant number of Newton's method at the start of a step in time over that of a steady flow: the guess is good, and the
-/// term of time is a pseudo time of its own.
+/// Ratio of the initial Courant number of Newton's method in a time step to that of a steady flow. It is large because
+/// the initial guess is good and the time derivative acts like a pseudo-time term.
 const STEP_CFL: f64 = 1000.0;
-/// Unknowns beyond which GMRES keeps fewer basis vectors, and how many: those of large systems are the peak of memory, and a Newton
-/// step that is solved less far costs fewer products too.
+/// Number of unknowns above which GMRES stores fewer basis vectors, and that number of vectors. For large systems the
+/// basis determines the peak of memory, and a less exact solution of a Newton step also needs fewer products.
 const LARGE: usize = 1 << 22;
 const LARGE_BASIS: usize = 14;
-/// Stages of the explicit method.
+/// Stage coefficients of the explicit method.
 const STAGES: [f64; 5] = [0.25, 1.0 / 6.0, 0.375, 0.5, 1.0];
 
 /// A relaxation in progress.
 pub struct Relax<'a, S: Implicit> {
     system: &'a S,
     control: Control,
-    /// Iterations done.
+    /// Number of iterations done.
     pub iteration: u32,
     /// Courant number of the next step.
     pub cfl: f64,
-    /// Size of the first residual.
+    /// Norm of the first residual.
     pub first_norm: f64,
-    /// Size of the last residual.
+    /// Norm of the latest residual.
     pub norm: f64,
-    /// State.
+    /// Current state u.
     pub u: Vec<f64>,
     frame: S::Frame,
-    /// Frame beside that of the state, where frames depend on the state.
+    /// Additional frame for trial states, if frames depend on the state.
     beside: Option<S::Frame>,
     work: S::Work,
     residual: Vec<f64>,
     trial: Vec<f64>,
     trial_residual: Vec<f64>,
-    /// Local time of each row, weighted so that all fields count alike.
+    /// Local time scale of each row, weighted so that all fields contribute equally.
     scale: Arc<[f64]>,
     rate: Vec<f64>,
     step: Vec<f64>,
@@ -89,42 +93,42 @@ pub struct Relax<'a, S: Implicit> {
     preconditioning: Option<Preconditioning<S::Preconditioner>>,
     gmres: Option<Gmres>,
     time: Option<TimeTerm>,
-    /// Residual over its first value that the relaxation, or the step in time, is after.
+    /// Ratio of the residual to its first value at which the relaxation or the time step ends.
     pub goal: f64,
-    /// Linear iterations so far.
+    /// Total number of linear iterations.
     pub linear: u32,
-    /// Evaluations of the residual so far.
+    /// Total number of evaluations of the residual.
     pub evaluations: u64,
 }
 
-/// ∂U/∂t as a difference formula, c·U + rest: what a step in time adds to the equations that are relaxed.
+/// Difference formula of ∂U/∂t, c·U + rest, which a time step adds to the relaxed equations.
 #[derive(Clone, Debug)]
 pub struct TimeTerm {
-    /// The formula, with the coordinates of bodies at its times.
+    /// Difference formula, with the coordinates of bodies at its times.
     pub formula: Formula,
-    /// Contribution of the states before the one that is sought.
+    /// Contribution of the earlier states to ∂U/∂t.
     pub rest: Vec<f64>,
 }
 
 impl TimeTerm {
-    /// Coefficient of the state that is sought.
+    /// Coefficient c of the new state.
     fn rate(&self) -> f64 {
         self.formula.coefficient(0)
     }
 }
 
-/// What a relaxation needs to go on where it stopped.
+/// Data that an interrupted relaxation needs to continue with identical results.
 #[derive(Clone, Debug)]
 pub struct Resume {
-    /// Iterations done.
+    /// Number of iterations done.
     pub iteration: u32,
-    /// Courant number.
+    /// Courant number of the next step.
     pub cfl: f64,
-    /// Linear iterations done.
+    /// Number of linear iterations done.
     pub linear: u32,
     /// Phase of the relaxation.
     pub phase: Phase,
-    /// Time scales of the rows that the residual is measured with.
+    /// Local time scales of the rows, with which the residual is normalised.
     pub scale: Arc<[f64]>,
 }
 
@@ -133,7 +137,8 @@ impl<S: Implicit> Integrator<S> for Relax<'_, S> {
         Relax::advance(self)
     }
 
-    /// A state that was handed over is relaxed once at least. Round-off falls no further.
+    /// True if the goal is reached. A given initial state is relaxed at least once, unless its residual is at
+    /// round-off.
     fn finished(&self) -> bool {
         self.iteration > 0 && (self.drop() <= self.goal || self.began_steady() && self.norm <= STEADY_ALREADY)
     }
@@ -157,8 +162,8 @@ impl<S: Implicit> Integrator<S> for Relax<'_, S> {
 }
 
 impl<'a, S: Implicit> Relax<'a, S> {
-    /// Starts from the state `u`, or goes on from `resume`. The residual is measured against that of the state `origin`
-    /// (the free stream), so that a good guess counts for what it is worth.
+    /// Starts from the state `u`, or continues from `resume`. The residual is normalised by that of the state `origin`
+    /// (the free stream), so that a good initial guess starts with a small relative residual.
     pub fn new(system: &'a S, control: Control, u: Vec<f64>, origin: &[f64], resume: Option<Resume>) -> Self {
         let n = u.len();
         let mut work = system.work();
@@ -203,8 +208,8 @@ impl<'a, S: Implicit> Relax<'a, S> {
         all
     }
 
-    /// Finds the residual of the state and that of `origin`, which it is measured against: from the time scales of the rows if it goes on,
-    /// so that nothing that was kept is to be believed.
+    /// Evaluates the residual of the state and that of `origin`, by which it is normalised. A continued relaxation
+    /// (`goes_on`) uses the stored time scales of the rows and recomputes everything else.
     fn measure_from(&mut self, origin: &[f64], goes_on: bool) {
         let system = self.system;
         system.rhs(&self.frame, origin, &mut self.work, &mut self.trial_residual);
@@ -213,64 +218,66 @@ impl<'a, S: Implicit> Relax<'a, S> {
         }
         system.rhs(&self.frame, &self.u, &mut self.work, &mut self.residual);
         if !goes_on {
-            // what the free stream does to a structure says nothing of its size: each field counts in its own units
+            // the residual of a structure in the free stream is no measure of its size: each field is measured in its
+            // own units
             weigh(system.fields(), Arc::make_mut(&mut self.scale), &[]);
         }
         self.first_norm = self.norm_of(&self.trial_residual).max(f64::MIN_POSITIVE);
         self.norm = self.norm_of(&self.residual);
     }
 
-    /// True when frames depend on the state.
+    /// True if frames depend on the state.
     fn moves(&self) -> bool {
         !self.system.placing().is_empty()
     }
 
-    /// Brings the frame to an instant.
+    /// Moves the frame to the instant `at`.
     pub fn set_frame(&mut self, at: &Instant<'_>) {
         self.system.place(at, &mut self.frame);
     }
 
-    /// Lets particles that travel choose where they go; see [`plan_lagrangian_step`](crate::system::System::plan_lagrangian_step).
+    /// Plans the next displacement of Lagrangian particles; see
+    /// [`plan_lagrangian_step`](crate::system::System::plan_lagrangian_step).
     pub fn plan_lagrangian_step(&mut self, step: f64) -> f64 {
         self.system.plan_lagrangian_step(step, &self.u, &mut self.work, &mut self.frame)
     }
 
-    /// Refuses a frame that puts particles where the cloud no longer serves.
+    /// Returns an error if the positions of particles have made the cloud unusable.
     pub fn check_frame(&self) -> Result<(), Fault> {
         self.system.check_frame(&self.frame)
     }
 
-    /// Largest relative change of density and pressure since the state was `before`.
+    /// Maximum relative change of density and pressure from the state `before` to the current state.
     pub fn changed_since(&mut self, before: &[f64]) -> f64 {
         let u = &self.u;
         sweep(&mut self.trial, |k| u[k] - before[k]);
         self.system.largest_change(before, &self.trial)
     }
 
-    /// Has what is remembered take in the step that the state has come from.
+    /// Updates the internal variables of materials after an accepted step.
     pub fn settle(&mut self) {
         self.system.settle(&self.frame, &mut self.work, &mut self.u);
     }
 
-    /// True when the state `u` is physical.
+    /// True if the state `u` is physical.
     pub fn is_sound(&self, u: &[f64]) -> bool {
         self.system.check(&self.frame, u).is_ok()
     }
 
-    /// How far the linear systems of steps in time reach.
+    /// Range of coupling of the linear systems of time steps.
     pub fn reach(&self) -> Reach {
         self.preconditioning.as_ref().map_or(Reach::Near, |p| p.reach)
     }
 
-    /// Says how far they reach.
+    /// Sets the range of coupling of the linear systems of time steps.
     pub fn set_reach(&mut self, reach: Reach) {
         if let Some(p) = self.preconditioning.as_mut() {
             p.reach = reach;
         }
     }
 
-    /// Makes the preconditioner of steps in time from the state `u` in the frame of `at` with the coefficient `rate` of the
-    /// state that is sought: a function of these alone, so that a run that is resumed can make it again.
+    /// Builds the preconditioner of time steps from the state `u`, the frame at `at` and the coefficient `rate` of the
+    /// new state. It depends on these alone, so that a resumed run can rebuild it.
     pub fn prepare_at(&mut self, at: &Instant<'_>, u: &[f64], rate: f64) {
         let Some(preconditioning) = self.preconditioning.as_mut() else { return };
         preconditioning.drop();
@@ -284,28 +291,27 @@ impl<'a, S: Implicit> Relax<'a, S> {
         preconditioning.make_ahead(self.system, (&self.frame, u), &mut self.work, &shift);
     }
 
-    /// Has the next iteration make its preconditioner.
+    /// Discards the preconditioner, so that the next iteration builds a new one.
     pub fn drop_preconditioner(&mut self) {
         if let Some(p) = self.preconditioning.as_mut() {
             p.drop();
         }
     }
 
-    /// True while what [`Self::prepare_at`] made serves.
+    /// True while the preconditioner of [`Self::prepare_at`] remains in use.
     pub fn still_serves(&self) -> bool {
         self.preconditioning.as_ref().is_some_and(Preconditioning::still_serves)
     }
 
-    /// Storage for [`TimeTerm::rest`]: that of the step before.
+    /// Storage for [`TimeTerm::rest`], reused from the step before.
     pub fn spare_rest(&mut self) -> Vec<f64> {
         self.time.take().map_or_else(|| vec![0.0; self.u.len()], |term| term.rest)
     }
 
-    /// Turns to the equations of a step in time, R(U) − c·U − rest = 0 at the end of the step, from the guess in `u`.
+    /// Starts a time step: solves R(U) − c·U − rest = 0 at the end of the step from the initial guess in `u`.
     ///
-    /// The residual is measured against the size of ∂U/∂t, or against itself at the guess if that is larger.
-    ///
-    /// What [`Self::prepare_at`] made goes on to serve.
+    /// The residual is normalised by the norm of ∂U/∂t, or by its own initial value if that is larger. The
+    /// preconditioner of [`Self::prepare_at`] remains in use.
     pub fn begin_step(&mut self, term: TimeTerm) {
         let (system, placing) = (self.system, self.system.placing());
         system.prescribe(term.formula.time(), &mut self.u);
@@ -334,17 +340,17 @@ impl<'a, S: Implicit> Relax<'a, S> {
         self.time = Some(term);
     }
 
-    /// Goes on with Newton's method at once, at the Courant number that it begins with: the state is near a solution.
+    /// Starts Newton's method at once, at its initial Courant number, because the state is near a solution.
     pub fn begin_with_newton(&mut self) {
         self.phase = Phase { newton: true, ..Phase::default() };
     }
 
-    /// Frame, storage and state at the end, without what was needed on the way.
+    /// Final frame, working storage and state; releases all other storage.
     pub fn into_end(self) -> (S::Frame, S::Work, Vec<f64>) {
         (self.frame, self.work, self.u)
     }
 
-    /// What a later run needs, beside the state, to go on to the same bits.
+    /// Data, beside the state, from which a later run continues with identical results.
     pub fn resume(&self) -> Resume {
         Resume {
             iteration: self.iteration,
@@ -355,44 +361,44 @@ impl<'a, S: Implicit> Relax<'a, S> {
         }
     }
 
-    /// Iterations of Newton's method on a steady state since the residual was last smallest.
+    /// Number of Newton iterations on a steady state since the last minimum of the residual.
     pub fn resting(&self) -> u32 {
         if self.phase.newton { self.phase.age - self.phase.best_age } else { 0 }
     }
 
-    /// Residual over its first value.
+    /// Ratio of the residual to its first value.
     pub fn drop(&self) -> f64 {
         self.norm / self.first_norm
     }
 
-    /// True where the first residual is round-off: the start is a steady flow, and there is nothing to converge.
+    /// True if the first residual is at round-off: the initial state is a steady flow, and nothing has to converge.
     pub fn began_steady(&self) -> bool {
         self.first_norm <= STEADY_ALREADY
     }
 
-    /// The residual R(u) of the last accepted state.
+    /// Residual R(u) of the last accepted state.
     pub fn residual(&self) -> &[f64] {
         &self.residual
     }
 
-    /// Residual over its first value below which round-off rules: a state that does not change cannot do better.
+    /// True if the residual, relative to its first value, is at round-off, so that it cannot decrease further.
     pub fn settled(&self) -> bool {
         self.norm <= ROUND_OFF
     }
 
-    /// Bytes held by the implicit machinery.
+    /// Memory of the implicit solver (bytes).
     pub fn bytes(&self) -> usize {
         8 * (5 * self.u.len() + 2 * self.rate.len())
             + self.preconditioning.as_ref().map_or(0, Preconditioning::bytes::<S>)
             + self.gmres.as_ref().map_or(0, Gmres::bytes)
     }
 
-    /// Root mean square over rows of the change that the residual would make in one local time.
+    /// Root mean square over the rows of the residual `r` times the local time.
     fn norm_of(&self, r: &[f64]) -> f64 {
         norm(self.system.fields(), r, &self.scale)
     }
 
-    /// One accepted step.
+    /// Computes one accepted step; an error means that no step was accepted.
     pub fn advance(&mut self) -> Result<Step, TimeError> {
         self.iteration += 1;
         loop {
@@ -421,15 +427,16 @@ impl<'a, S: Implicit> Relax<'a, S> {
         }
     }
 
-    /// What to say where it cannot go on.
+    /// Error for a relaxation that cannot continue.
     pub fn stalled(&self) -> TimeError {
         TimeError::Stalled { iteration: self.iteration, cfl: self.cfl, place: self.worst() }
     }
 
-    /// Newton's method once the flow has taken shape; back to sweeps alone when its steps become small.
+    /// Changes to Newton's method when the flow pattern has developed, and back to sweeps alone when Newton steps
+    /// become small.
     ///
-    /// While shocks travel the linearisation of the second-order scheme is indefinite and Newton crawls, but the first-order
-    /// operator still moves them; near the solution it is the other way round.
+    /// While shocks move, the linearisation of the second-order scheme is indefinite and Newton's method makes little
+    /// progress, but the first-order operator still moves the shocks. Near the solution the opposite holds.
     fn choose_phase(&mut self) {
         if self.control.method != Method::NewtonKrylov || self.time.is_some() {
             return;
@@ -470,7 +477,7 @@ impl<'a, S: Implicit> Relax<'a, S> {
         }
     }
 
-    /// Where the largest residual is: a particle and its place, or a row of another field.
+    /// Location of the maximum residual: a particle with its position, or a row of another field.
     pub fn worst(&self) -> String {
         let (mut worst, mut whose) = ((0, -1.0), String::new());
         for at in placed(self.system.fields()) {

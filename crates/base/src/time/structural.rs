@@ -1,10 +1,11 @@
-//! Implicit methods for structures: steps of generalised-α, and equilibrium.
+//! Implicit methods for structures: generalised-α steps in time, and static equilibrium.
 //!
-//! A step of the generalised-α method (Chung and Hulbert 1993, doi:10.1115/1.2900803) with spectral radius ρ∞ of what is too fast to be
-//! resolved solves M a_m + f_int(u_f) = f(t_f) at points within the step; ρ∞ = 1 is the mean acceleration of Newmark (1959), which keeps
-//! the energy of linear structures. Newton's method solves it, with the consistent tangent of the materials, and
-//! conjugate gradients solve Newton's equations, preconditioned by Cholesky factors of an earlier matrix, or by its diagonal
-//! where there are too many unknowns for that. Equilibrium is the same without inertia, in steps of the load.
+//! A step of the generalised-α method (Chung and Hulbert 1993, doi:10.1115/1.2900803) solves M a_m + f_int(u_f) =
+//! f(t_f) at points within the step, with the spectral radius ρ∞ for frequencies that are not resolved; ρ∞ = 1 is the
+//! constant average acceleration of Newmark (1959), which conserves the energy of linear structures. Newton's method
+//! uses the consistent tangent of the materials. Its equations are solved by conjugate gradients, preconditioned by
+//! Cholesky factors of an earlier matrix, or by the diagonal if there are too many unknowns for a factorisation.
+//! Equilibrium uses the same solver without inertia, in load steps.
 use super::{Cost, Integrator, Mark, Memory, Past, Standing, Step, TimeError};
 use crate::math::conjugate::{Symmetric as ByProducts, conjugate_gradients};
 use crate::math::reduce::{dot, maximum, sum};
@@ -12,29 +13,30 @@ use crate::math::sparse::Factors;
 use crate::math::types::Vector;
 use crate::system::{Fault, Instant, Mechanical, Moment};
 
-/// How Newton's equations are solved.
+/// Parameters of Newton's method.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Newton {
-    /// Part of the forces that may be left.
+    /// Ratio of the residual force to the applied forces at convergence.
     pub tolerance: f64,
-    /// Greatest number of iterations.
+    /// Maximum number of iterations.
     pub iterations: u32,
 }
 
-/// Part of the forces that round-off may leave where Newton's method gets no further.
+/// Ratio of the residual force to the forces that is accepted as round-off if Newton's method makes no further
+/// progress.
 const ROUND_OFF: f64 = 1e-6;
-/// Iterations of conjugate gradients with factors after which these are made anew.
+/// Number of conjugate-gradient iterations with factors after which the factors are recomputed.
 const STALE: usize = 12;
-/// Iterations of conjugate gradients with a diagonal.
+/// Maximum number of conjugate-gradient iterations with the diagonal.
 const MOST: usize = 20_000;
 
-/// Solves scale K + shift M, step after step.
+/// Solver of (scale K + shift M) x = r for successive matrices.
 struct Solver {
     factors: Option<Factors>,
     stale: bool,
 }
 
-/// One system of equations of Newton's method.
+/// One linear system of Newton's method.
 struct Equations<'a, S: Mechanical> {
     system: &'a S,
     stiffness: &'a S::Stiffness,
@@ -45,7 +47,8 @@ struct Equations<'a, S: Mechanical> {
 impl Solver {
     const NEW: Self = Self { factors: None, stale: true };
 
-    /// Adds to `x` what solves the equations for what is left, `r`; the iterations it took. `None` where the matrix is not positive.
+    /// Adds the solution for the residual `r` to `x` and returns the number of iterations; `None` if the matrix is not
+    /// positive definite.
     fn solve<S: Mechanical>(
         &mut self,
         equations: &Equations<'_, S>,
@@ -101,27 +104,27 @@ impl Solver {
     }
 }
 
-/// The diagonal of scale K + shift M.
+/// Diagonal of scale K + shift M.
 fn diagonal<S: Mechanical>(equations: &Equations<'_, S>) -> Vec<f64> {
     let Equations { system, stiffness, scale, shift } = *equations;
     let of = |(k, d): (usize, &f64)| if system.is_held(k) { 1.0 } else { scale * d + shift * system.mass(k) };
     system.diagonal(stiffness).iter().enumerate().map(of).collect()
 }
 
-/// What makes a step implicit.
+/// Parameters of an implicit march.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Plan {
-    /// Length of a step.
+    /// Length of a time step.
     pub step: f64,
     /// Time at the end.
     pub until: f64,
-    /// Spectral radius of what is too fast, 0 to 1.
+    /// Spectral radius ρ∞ for unresolved frequencies, 0 to 1; smaller values damp them more.
     pub radius: f64,
-    /// Newton's method.
+    /// Parameters of Newton's method.
     pub newton: Newton,
 }
 
-/// The generalised-α method.
+/// An implicit march of a structure by the generalised-α method.
 pub struct GeneralisedAlpha<'a, S: Mechanical> {
     system: &'a S,
     plan: Plan,
@@ -135,7 +138,7 @@ pub struct GeneralisedAlpha<'a, S: Mechanical> {
     cost: Cost,
 }
 
-/// The parameters of the method.
+/// Parameters of the generalised-α method.
 #[derive(Clone, Copy)]
 struct Weights {
     mass: f64,
@@ -151,19 +154,19 @@ impl Weights {
         Self { mass, force, beta: 0.25 * (1.0 - mass + force).powi(2), gamma }
     }
 
-    /// What velocities at the end of a step gain with displacements there.
+    /// Derivative of the velocities at the end of a step with respect to the displacements there [1/time].
     fn rate(self, step: f64) -> f64 {
         self.gamma / (self.beta * step)
     }
 
-    /// What multiplies the mass in Newton's equations, with damping in proportion to it.
+    /// Factor of the mass matrix in Newton's equations, including mass-proportional damping.
     fn shift(self, step: f64, damping: f64) -> f64 {
         (1.0 - self.mass) / (self.beta * step * step) + (1.0 - self.force) * self.rate(step) * damping
     }
 }
 
 impl<'a, S: Mechanical> GeneralisedAlpha<'a, S> {
-    /// A march from the state `u`, whose accelerations are in `past.before` where it goes on.
+    /// Prepares a march from the state `u`; if the march is resumed, `past.before` holds the accelerations.
     pub fn new(system: &'a S, plan: Plan, past: Past, u: Vec<f64>) -> Self {
         let n = system.displacements();
         let mut march = Self {
@@ -190,7 +193,7 @@ impl<'a, S: Mechanical> GeneralisedAlpha<'a, S> {
         march
     }
 
-    /// One step of length `step`: the new state and accelerations, or why there are none.
+    /// Computes one step of length `step`: the new state and accelerations, or the reason of the failure.
     fn step(&mut self, step: f64, end: f64) -> Result<(), Fault> {
         let (system, n) = (self.system, self.acceleration.len());
         let w = Weights::of(self.plan.radius);
@@ -198,9 +201,9 @@ impl<'a, S: Mechanical> GeneralisedAlpha<'a, S> {
         let (v0, history) = (rest[..n].to_vec(), &rest[n..]);
         let a0 = self.acceleration.clone();
         let held: Vec<bool> = (0..n).map(|k| system.is_held(k)).collect();
-        // factors of a step before would be of another run where this one is resumed
+        // factors of an earlier step would not be available to a resumed run
         self.solver.stale = true;
-        // a first guess: accelerations stay
+        // initial guess: constant accelerations
         let mut u: Vec<f64> = (0..n).map(|k| u0[k] + step * v0[k] + 0.5 * step * step * a0[k]).collect();
         system.hold(end, &mut u);
         let middle = self.past.time + (1.0 - w.force) * step;
@@ -244,7 +247,7 @@ impl<'a, S: Mechanical> GeneralisedAlpha<'a, S> {
             self.cost.linear += linear as u32;
             u.iter_mut().zip(&change).for_each(|(u, c)| *u += c);
         }
-        let reason = format!("Newton's method did not get to the end of a step of {step:.3e} at time {end:.6e}");
+        let reason = format!("Newton's method did not converge in a step of {step:.3e} to time {end:.6e}");
         Err(Fault { particle: 0, place: Vec::new(), reason })
     }
 
@@ -264,7 +267,7 @@ impl<'a, S: Mechanical> GeneralisedAlpha<'a, S> {
             new[k] = u[k];
             new[n + k] = v0[k] + step * ((1.0 - w.gamma) * a0[k] + w.gamma * a);
         }
-        // materials remember the end of the step, not the point within
+        // materials store the state at the end of the step, not that at the point within it
         let (displacement, rest) = new.split_at(n);
         let at = Moment { time: end, step, displacement, velocity: &rest[..n], history: &self.u[2 * n..] };
         let mut force = vec![0.0; n];
@@ -298,10 +301,10 @@ impl<S: Mechanical> Integrator<S> for GeneralisedAlpha<'_, S> {
     }
 
     fn advance(&mut self) -> Result<Step, TimeError> {
-        /// Times a step may be halved.
+        /// Maximum number of times that a step is halved.
         const HALVED: u32 = 10;
         let left = self.plan.until - self.past.time;
-        // what round-off leaves of the time is no step of its own
+        // a remaining time at round-off level is added to the last step
         let mut step = if left < self.plan.step * (1.0 + 1e-6) { left } else { self.plan.step };
         for halved in 0..=HALVED {
             let end = if step == left { self.plan.until } else { self.past.time + step };
@@ -320,7 +323,7 @@ impl<S: Mechanical> Integrator<S> for GeneralisedAlpha<'_, S> {
                     });
                 }
                 Err(fault) if halved == HALVED => {
-                    let hint = "lower `time.newmark.step`, or look whether the load is what it should be";
+                    let hint = "lower `time.newmark.step`, or check the loads and their units";
                     return Err(TimeError::Fault { fault, iteration: self.past.iteration + 1, hint });
                 }
                 Err(_) => {
@@ -334,16 +337,17 @@ impl<S: Mechanical> Integrator<S> for GeneralisedAlpha<'_, S> {
     }
 }
 
-/// How equilibrium is found.
+/// Parameters of a search for equilibrium.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LoadPlan {
-    /// Steps in which the load grows to what it is.
+    /// Number of load steps up to the full load.
     pub steps: u32,
-    /// Newton's method.
+    /// Parameters of Newton's method.
     pub newton: Newton,
 }
 
-/// Equilibrium: `time` of the structure goes from 0 to 1 with the load, which a system is to take part of where it asks for it.
+/// Search for static equilibrium: the time of the structure increases from 0 to 1 with the load, and a system applies
+/// the corresponding fraction of its loads.
 pub struct Equilibrium<'a, S: Mechanical> {
     system: &'a S,
     plan: LoadPlan,
@@ -357,7 +361,7 @@ pub struct Equilibrium<'a, S: Mechanical> {
 }
 
 impl<'a, S: Mechanical> Equilibrium<'a, S> {
-    /// The way to equilibrium from the state `u`.
+    /// Prepares a search for equilibrium from the state `u`.
     pub fn new(system: &'a S, plan: LoadPlan, past: Past, u: Vec<f64>) -> Self {
         Self {
             frame: system.frame(&Instant::still(past.time), &u),
@@ -372,7 +376,7 @@ impl<'a, S: Mechanical> Equilibrium<'a, S> {
         }
     }
 
-    /// Equilibrium under part `load` of the load.
+    /// Finds the equilibrium under the fraction `load` of the load.
     fn settle(&mut self, load: f64) -> Result<(), Fault> {
         let (system, n) = (self.system, self.system.displacements());
         let mut u = self.u[..n].to_vec();
@@ -412,7 +416,7 @@ impl<'a, S: Mechanical> Equilibrium<'a, S> {
             u.iter_mut().zip(&change).for_each(|(u, c)| *u += c);
         }
         let reason = format!(
-            "Newton's method found no equilibrium under {:.1} % of the load: forces are left to {:.1e} of the largest",
+            "Newton's method found no equilibrium under {:.1} % of the load: the residual is {:.1e} of the largest force",
             100.0 * load,
             self.residual
         );
@@ -442,7 +446,7 @@ impl<S: Mechanical> Integrator<S> for Equilibrium<'_, S> {
     }
 
     fn advance(&mut self) -> Result<Step, TimeError> {
-        /// Times a step of the load may be halved.
+        /// Maximum number of times that a load step is halved.
         const HALVED: u32 = 8;
         let mut step = (1.0 / f64::from(self.plan.steps)).min(1.0 - self.past.time);
         for halved in 0..=HALVED {
@@ -464,7 +468,7 @@ impl<S: Mechanical> Integrator<S> for Equilibrium<'_, S> {
                 }
                 Err(fault) if halved == HALVED => {
                     self.u = before;
-                    let hint = "take more `load_steps`, hold the body in more places, or look for buckling";
+                    let hint = "raise `load_steps`, add supports, or check whether the body buckles";
                     return Err(TimeError::Fault { fault, iteration: self.past.iteration + 1, hint });
                 }
                 Err(_) => {

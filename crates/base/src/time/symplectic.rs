@@ -1,25 +1,25 @@
 //! Explicit marching of structures: Verlet's method.
 //!
-//! v′ = v + ½Δt a, u ← u + Δt v′, a ← M⁻¹ f(u, v′), v = v′ + ½Δt a: of second order, it keeps momentum, and energy to a bounded
-//! ripple (Hairer, Lubich and Wanner 2003, doi:10.1017/S0962492902000144). The work of all that is no energy of the structure is
-//! summed up on the way, with the mean of the forces at both ends of a step.
+//! v′ = v + ½Δt a, u ← u + Δt v′, a ← M⁻¹ f(u, v′), v = v′ + ½Δt a. The method is of second order; it conserves
+//! momentum, and energy up to a bounded oscillation (Hairer, Lubich and Wanner 2003, doi:10.1017/S0962492902000144).
+//! The work of loads and damping is integrated with the mean of the forces at both ends of a step.
 use super::{Cost, Integrator, Mark, Memory, Past, Standing, Step, TimeError};
 use crate::math::parallel::sweep_rows;
 use crate::system::{Instant, Mechanical, Moment};
 
-/// How to march.
+/// Parameters of an explicit march.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Plan {
-    /// Part of the longest stable step.
+    /// Fraction of the longest stable step.
     pub cfl: f64,
     /// Time at the end.
     pub until: f64,
 }
 
-/// Steps between two looks at the longest stable step.
+/// Number of steps between two computations of the longest stable step.
 const LOOK: u32 = 20;
 
-/// Verlet's method.
+/// An explicit march of a structure by Verlet's method.
 pub struct Symplectic<'a, S: Mechanical> {
     system: &'a S,
     plan: Plan,
@@ -35,7 +35,7 @@ pub struct Symplectic<'a, S: Mechanical> {
 }
 
 impl<'a, S: Mechanical> Symplectic<'a, S> {
-    /// A march from the state `u`.
+    /// Prepares a march from the state `u`.
     pub fn new(system: &'a S, plan: Plan, past: Past, u: Vec<f64>) -> Self {
         let n = system.displacements();
         let mut march = Self {
@@ -59,7 +59,7 @@ impl<'a, S: Mechanical> Symplectic<'a, S> {
         march
     }
 
-    /// Forces in the state at hand.
+    /// Evaluates forces and accelerations of the current state.
     fn evaluate(&mut self, step: f64) {
         let n = self.force.len();
         let (u, rest) = self.u.split_at(n);
@@ -69,7 +69,7 @@ impl<'a, S: Mechanical> Symplectic<'a, S> {
         self.evaluations += 1;
     }
 
-    /// v += Δt a for all that is free.
+    /// Computes v += Δt a for the free degrees of freedom.
     fn kick(&mut self, step: f64) {
         let n = self.force.len();
         let (system, force) = (self.system, &self.force);
@@ -78,7 +78,7 @@ impl<'a, S: Mechanical> Symplectic<'a, S> {
         });
     }
 
-    /// u += Δt v, with what is held where it is to be.
+    /// Computes u += Δt v and imposes the displacements of the supports.
     fn drift(&mut self, step: f64, end: f64) {
         let n = self.force.len();
         let (u, rest) = self.u.split_at_mut(n);
@@ -137,9 +137,9 @@ impl<S: Mechanical> Integrator<S> for Symplectic<'_, S> {
         if let Err(fault) = self.system.check_forces(&self.work, &self.u[..n]) {
             self.u.copy_from_slice(&self.last_good);
             (self.past.time, self.past.iteration) = (start, self.past.iteration - 1);
-            // a later march goes on from the forces in the state that is kept
+            // a later march starts from the forces of the stored state
             self.evaluate(0.0);
-            let hint = "lower `time.explicit.cfl`, or look whether the load is what it should be";
+            let hint = "lower `time.explicit.cfl`, or check the loads and their units";
             return Err(TimeError::Fault { fault, iteration: self.past.iteration + 1, hint });
         }
         Ok(Step { iteration: self.past.iteration, time: end, cfl: self.plan.cfl, residual: 1.0, linear: 0 })

@@ -1,12 +1,13 @@
-//! Forced vibration of structures by harmonic balance: the equations of a periodic motion, and their preconditioner.
+//! Forced vibration of structures by harmonic balance: the equations of a periodic motion and their preconditioner.
 //!
-//! The unknowns are the displacements u_n at the 2N + 1 instances of a period. With ∂/∂t = ωD, exact for N harmonics, they obey
-//! f(t_n, u_n, (ωDu)_n) − M (ω²D²u)_n = 0 (Hall, Thomas and Clark, AIAA J. 40, 2002, of M u″ = f in place of u′ = R). *Oversampling*
-//! evaluates f at more instances than there are unknowns and keeps the harmonics up to N of it: with twice as many, products of three
-//! displacements are not folded back. Supports that are led have the harmonics up to N of their motion.
+//! The unknowns are the displacements u_n at the 2N + 1 instances of a period. With ∂/∂t = ωD, which is exact for N
+//! harmonics, they satisfy f(t_n, u_n, (ωDu)_n) − M (ω²D²u)_n = 0 (Hall, Thomas and Clark, AIAA J. 40, 2002, for M u″ =
+//! f instead of u′ = R). *Oversampling* evaluates f at more instances than there are unknowns and keeps its harmonics
+//! up to N: with twice as many instances, products of three displacements are not aliased. The prescribed motion of
+//! supports is truncated to its harmonics up to N.
 //!
-//! The linear systems are preconditioned harmonic by harmonic, by factors of (1 + ikωβ) K + (ikωα − k²ω²) M with the mean stiffness K of all
-//! instances and damping α M + β K.
+//! The linear systems are preconditioned for each harmonic k by a factorisation of (1 + ikωβ) K + (ikωα − k²ω²) M, with
+//! the stiffness K averaged over all instances and the damping α M + β K.
 use num_complex::Complex64;
 
 use crate::math::fourier::{Instances, Matrix};
@@ -15,22 +16,22 @@ use crate::math::reduce::{maximum, sum};
 use crate::math::sparse::ComplexFactors;
 use crate::system::{Damping, Fault, Mechanical, Moment};
 
-/// A periodic motion that is sought.
+/// Frequency and instances of a periodic motion.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Periodic {
-    /// Angular frequency.
+    /// Angular frequency ω [rad/time].
     pub omega: f64,
-    /// Instances that hold the displacements.
+    /// Instances at which the displacements are unknowns.
     pub held: Instances,
-    /// Instances at which forces are evaluated, at least as many.
+    /// Instances at which forces are evaluated; at least as many as those of the unknowns.
     pub seen: Instances,
 }
 
-/// The equations of a periodic motion. Vectors hold the displacements of one instance after another.
+/// Equations of a periodic motion. Vectors hold the displacements of all instances, one instance after another.
 pub struct Vibration<'a, S: Mechanical> {
     system: &'a S,
     periodic: Periodic,
-    /// What materials remember: of those that do not, a place to begin from.
+    /// Internal variables of the materials; for other materials, the initial values of an evaluation.
     history: Vec<f64>,
     derivative: Matrix,
     up: Matrix,
@@ -40,25 +41,26 @@ pub struct Vibration<'a, S: Mechanical> {
     factors: Vec<ComplexFactors>,
 }
 
-/// The motion at one moment.
+/// Motion at one time.
 #[derive(Clone, Debug)]
 pub struct Motion {
-    /// Displacements.
+    /// Displacements of all degrees of freedom.
     pub displacement: Vec<f64>,
-    /// Velocities.
+    /// Velocities of all degrees of freedom.
     pub velocity: Vec<f64>,
-    /// Accelerations.
+    /// Accelerations of all degrees of freedom.
     pub acceleration: Vec<f64>,
 }
 
-/// Stiffness, and damping where there is any but in proportion to mass, at all instances where forces are evaluated.
+/// Stiffness, and any damping other than that proportional to mass, at all instances where forces are evaluated.
 pub struct Linearised<S: Mechanical> {
     stiffness: Vec<S::Stiffness>,
     damping: Vec<S::Stiffness>,
 }
 
 impl<'a, S: Mechanical> Vibration<'a, S> {
-    /// The motion `periodic` of `system`, whose materials remember `history` and add nothing to it.
+    /// Equations for the motion `periodic` of `system`, whose materials have the internal variables `history`; these do
+    /// not change.
     pub fn new(system: &'a S, periodic: Periodic, history: Vec<f64>) -> Self {
         let Periodic { omega, held, seen } = periodic;
         Self {
@@ -74,32 +76,32 @@ impl<'a, S: Mechanical> Vibration<'a, S> {
         }
     }
 
-    /// The structure.
+    /// The structure whose motion is periodic.
     pub fn system(&self) -> &'a S {
         self.system
     }
 
-    /// Number of displacements of an instance.
+    /// Number of displacements of one instance.
     fn n(&self) -> usize {
         self.system.displacements()
     }
 
-    /// Number of instances.
+    /// Number of instances of the unknowns.
     fn count(&self) -> usize {
         self.periodic.held.count()
     }
 
-    /// Unknowns, those of all instances.
+    /// Number of unknowns of all instances.
     pub fn len(&self) -> usize {
         self.n() * self.count()
     }
 
-    /// True where nothing can move.
+    /// True if the structure has no degrees of freedom.
     pub fn is_empty(&self) -> bool {
         self.len() == 0
     }
 
-    /// Puts what is held where it is to be.
+    /// Imposes the displacements of the supports at all instances.
     pub fn hold(&self, u: &mut [f64]) {
         let (n, seen) = (self.n(), self.periodic.seen);
         let led: Vec<Vec<f64>> = seen
@@ -118,7 +120,7 @@ impl<'a, S: Mechanical> Vibration<'a, S> {
         }
     }
 
-    /// Σ_j weights_j u_j of the instances.
+    /// Sum Σ_j weights_j u_j over the instances.
     fn combined(&self, u: &[f64], weights: &[f64]) -> Vec<f64> {
         let n = self.n();
         let mut out = vec![0.0; n];
@@ -126,12 +128,13 @@ impl<'a, S: Mechanical> Vibration<'a, S> {
         out
     }
 
-    /// Rates of `u` at all instances.
+    /// Time derivative of `u` at all instances.
     fn rate(&self, u: &[f64]) -> Vec<f64> {
         (0..self.count()).flat_map(|m| self.combined(u, self.derivative.row(m))).collect()
     }
 
-    /// The displacements `u` of the instances of `from` at those of this motion: exact, or the part that these can hold.
+    /// Interpolates the displacements `u` from the instances of `from` to those of this motion: exact, or truncated to
+    /// the harmonics that these can represent.
     pub fn resampled(&self, u: &[f64], from: Instances) -> Vec<f64> {
         let matrix = from.resample(&self.periodic.held);
         let mut all: Vec<f64> = (0..self.count()).flat_map(|m| self.combined(u, matrix.row(m))).collect();
@@ -139,7 +142,7 @@ impl<'a, S: Mechanical> Vibration<'a, S> {
         all
     }
 
-    /// The motion at the phase ωt.
+    /// Displacement, velocity and acceleration at the phase ωt (rad).
     pub fn at_phase(&self, u: &[f64], phase: f64) -> Motion {
         let weights = self.periodic.held.weights(phase);
         let velocity = self.rate(u);
@@ -148,7 +151,7 @@ impl<'a, S: Mechanical> Vibration<'a, S> {
         Motion { displacement: of(u), velocity: of(&velocity), acceleration: of(&acceleration) }
     }
 
-    /// What is left of the equations, and the largest force in it.
+    /// Writes the residual of the equations to `out` and returns the maximum force in it.
     pub fn residual(&mut self, u: &[f64], out: &mut [f64]) -> Result<f64, Fault> {
         let (n, system) = (self.n(), self.system);
         let velocity = self.rate(u);
@@ -173,7 +176,7 @@ impl<'a, S: Mechanical> Vibration<'a, S> {
         Ok(largest)
     }
 
-    /// Stiffness and damping about the motion `u`.
+    /// Stiffness and damping linearised about the motion `u`.
     pub fn linearise(&self, u: &[f64]) -> Linearised<S> {
         let velocity = self.rate(u);
         let of = |parts: [f64; 2]| {
@@ -189,7 +192,7 @@ impl<'a, S: Mechanical> Vibration<'a, S> {
         Linearised { stiffness: of([1.0, 0.0]), damping }
     }
 
-    /// out = what the residual loses with `w`; loads that follow the surface are left out.
+    /// Computes out = −(∂r/∂u) w, the decrease of the residual due to `w`; the change of follower loads is neglected.
     pub fn product(&mut self, linear: &Linearised<S>, w: &[f64], out: &mut [f64]) {
         let (n, system) = (self.n(), self.system);
         let rate = self.rate(w);
@@ -212,7 +215,7 @@ impl<'a, S: Mechanical> Vibration<'a, S> {
         }
     }
 
-    /// Makes the preconditioner about `linear`; false where a matrix is singular.
+    /// Factors the preconditioner for `linear`; false if a matrix is singular.
     pub fn factor(&mut self, linear: &Linearised<S>) -> bool {
         let system = self.system;
         let part = 1.0 / linear.stiffness.len() as f64;
@@ -234,7 +237,7 @@ impl<'a, S: Mechanical> Vibration<'a, S> {
         !self.factors.is_empty()
     }
 
-    /// z ≈ what solves the linear systems for `r`.
+    /// Approximate solution z of the linear systems for the right-hand side `r`.
     pub fn precondition(&mut self, r: &[f64], z: &mut [f64]) {
         let (n, held, system) = (self.n(), self.periodic.held, self.system);
         let (forward, back, h) = (held.to_coefficients(), held.to_values(), held.harmonics());
@@ -263,8 +266,8 @@ impl<'a, S: Mechanical> Vibration<'a, S> {
         }
     }
 
-    /// Part that the last harmonic has of all, by displacements weighed with masses; of motions whose every other harmonic is nothing the last
-    /// that there is. `None` of a single one.
+    /// Fraction of the last harmonic in the whole motion, for displacements weighted by mass; a measure of truncation.
+    /// If every second harmonic vanishes, the last one that does not is used. `None` with a single harmonic.
     pub fn tail(&self, u: &[f64]) -> Option<f64> {
         let (n, held) = (self.n(), self.periodic.held);
         let (forward, h) = (held.to_coefficients(), held.harmonics());
@@ -279,12 +282,12 @@ impl<'a, S: Mechanical> Vibration<'a, S> {
     }
 }
 
-/// 1 + iβω, of the elastic forces.
+/// Complex stiffness factor 1 + iβω of the elastic forces.
 fn elastic(damping: Damping, omega: f64) -> Complex64 {
     Complex64::new(1.0, damping.stiffness * omega)
 }
 
-/// a/b.
+/// Complex quotient a/b, with a and the result as (real part, imaginary part).
 fn quotient(a: [f64; 2], b: Complex64) -> [f64; 2] {
     let c = Complex64::new(a[0], a[1]) / b;
     [c.re, c.im]

@@ -1,6 +1,6 @@
-//! Assembly of a matrix of small dense blocks: what adds to the blocks of a part of its rows.
+//! Assembly of the blocks in one part of the rows of a block matrix.
 //!
-//! What rounding takes from an off-diagonal block goes to the diagonal block of its row.
+//! The rounding error of an off-diagonal block is added to the diagonal block of its row.
 use super::Columns;
 use crate::math::blocks::MOST_ENTRIES;
 use crate::math::rounded::{UNIT, round_block, unit_of};
@@ -13,12 +13,13 @@ pub struct Rows<'a> {
     pub(super) diagonal: &'a mut [f32],
     pub(super) start: usize,
     pub(super) block: usize,
-    /// What entries are multiplied by, for their scale and for means.
+    /// Factor of each entry, from the scale of the unknowns and the weight of a mean.
     pub(super) factor: &'a [f32; MOST_ENTRIES],
 }
 
 impl Rows<'_> {
-    /// Adds `f(r, c)` to the block that couples row `i` to column `j`; does nothing when the pattern has none.
+    /// Adds `f(r, c)` to entry (r, c) of the block that couples row `i` to column `j`; does nothing if the pattern has
+    /// no such block.
     pub fn add(&mut self, i: usize, j: usize, f: impl Fn(usize, usize) -> f64) {
         let n = self.block;
         let mut block = [0.0; MOST_ENTRIES];
@@ -29,7 +30,8 @@ impl Rows<'_> {
         }
     }
 
-    /// Adds `block`, by columns, to the diagonal block of row `i`; told the order `n` of the blocks, faster where that is a constant.
+    /// Adds `block`, stored by columns, to the diagonal block of row `i`; `n` is the order of the blocks, for which a
+    /// constant gives faster code.
     #[inline(always)]
     pub fn add_own(&mut self, n: usize, i: usize, block: &[f32]) {
         debug_assert_eq!(n, self.block);
@@ -40,7 +42,8 @@ impl Rows<'_> {
         }
     }
 
-    /// Adds `block`, by columns, to the one that couples row `i` to another column `j`; does nothing when the pattern has none.
+    /// Adds `block`, stored by columns, to the block that couples row `i` to another column `j`; does nothing if the
+    /// pattern has no such block.
     #[inline(always)]
     pub fn add_other(&mut self, n: usize, (i, j): (usize, usize), block: &[f32]) {
         debug_assert_eq!(n, self.block);
@@ -62,7 +65,7 @@ impl Rows<'_> {
     }
 }
 
-/// Where `j` is in an ascending list.
+/// Position of `j` in an ascending list; `None` if it is absent.
 #[inline(always)]
 fn position(list: &[u32], j: u32) -> Option<usize> {
     const STEP: usize = 8;

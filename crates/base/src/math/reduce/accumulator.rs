@@ -1,31 +1,31 @@
-//! Sums of numbers that do not depend on the order in which the numbers are added.
+//! Exact sums, which do not depend on the order of the summands.
 //!
-//! A number in double precision is a whole number of 2^-1074. The accumulator holds the sum of such numbers as one long whole number in
-//! limbs of 40 bits (Kulisch, *Computer Arithmetic and Validity*, 2013, ch. 8), so that nothing is rounded until the sum is read. A limb has 23
-//! bits to spare: 2^23 numbers can be added before one overflows.
+//! A number in double precision is an integer multiple of 2^-1074. The accumulator stores the sum of such numbers as
+//! one long integer in limbs of 40 bits (Kulisch, *Computer Arithmetic and Validity*, 2013, ch. 8), so that nothing is
+//! rounded until the sum is read. A limb has 23 spare bits: 2^23 numbers can be added before it overflows.
 
-/// Bits of a limb, and limbs that hold every finite number in double precision.
+/// Number of bits of a limb, and number of limbs that hold every finite number in double precision.
 const BITS: usize = 40;
 const LIMBS: usize = 54;
-/// Bits of the significand of a number, and bits that its exponent starts at.
+/// Number of stored bits of the significand, and exponent of the smallest unit, 2^-1074.
 const SIGNIFICAND: u32 = 52;
 const LOWEST: i32 = 1074;
-/// What is remembered of numbers that are not finite.
+/// Flags for summands that are not finite.
 const POSITIVE: u8 = 1;
 const NEGATIVE: u8 = 2;
 const NO_NUMBER: u8 = 4;
 
-/// The exact sum of what was added to it.
+/// The exact sum of the numbers that were added.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Accumulator {
-    /// Limb k counts in 2^(40 k − 1074).
+    /// Limb k has the unit 2^(40 k − 1074).
     limbs: [i64; LIMBS],
-    /// Infinities and numbers that are none among what was added, bit by bit.
+    /// Flags of infinities and NaN among the summands.
     stray: u8,
 }
 
 impl Accumulator {
-    /// The sum of nothing.
+    /// The empty sum.
     pub const ZERO: Self = Self { limbs: [0; LIMBS], stray: 0 };
 
     /// Adds one number.
@@ -42,7 +42,7 @@ impl Accumulator {
             };
             return;
         }
-        // numbers without the leading one have the exponent of the smallest that have it
+        // subnormal numbers have the same unit as the smallest normal ones
         let significand = if exponent == 0 { fraction } else { fraction | 1 << SIGNIFICAND };
         let place = exponent.max(1) - 1;
         let (k, shift) = (place / BITS, place % BITS);
@@ -53,13 +53,13 @@ impl Accumulator {
         }
     }
 
-    /// Adds all that was added to another one.
+    /// Adds the sum of another accumulator.
     pub fn merge(&mut self, other: &Self) {
         self.limbs.iter_mut().zip(&other.limbs).for_each(|(a, b)| *a += b);
         self.stray |= other.stray;
     }
 
-    /// The sum in double precision, rounded once; what is not finite among the numbers is so in their sum.
+    /// The sum in double precision, rounded once; infinities and NaN among the summands give an infinity or NaN.
     pub fn value(&self) -> f64 {
         match self.stray {
             0 => {}
@@ -80,7 +80,7 @@ impl Accumulator {
 
 const MASK: u128 = (1 << BITS) - 1;
 
-/// Brings all limbs but the last to 0 ≤ limb < 2^40; the last.
+/// Normalises all limbs except the last to 0 ≤ limb < 2^40 and returns the last one.
 fn carry(limbs: &mut [i64; LIMBS]) -> i64 {
     for k in 0..LIMBS - 1 {
         let over = limbs[k] >> BITS;
@@ -90,19 +90,19 @@ fn carry(limbs: &mut [i64; LIMBS]) -> i64 {
     limbs[LIMBS - 1]
 }
 
-/// The number whose limbs, none of them negative, these are.
+/// The number with these limbs, none of which is negative.
 fn read(limbs: &[i64; LIMBS]) -> f64 {
     let Some(top) = limbs.iter().rposition(|limb| *limb != 0) else { return 0.0 };
     let low = top.saturating_sub(2);
     let high = limbs[low..=top].iter().rev().fold(0u128, |all, limb| all << BITS | *limb as u128);
-    // what lies below decides only where the rest is just between two numbers
+    // the lower bits matter only if the rest lies exactly between two numbers
     let below = u128::from(limbs[..low].iter().any(|limb| *limb != 0));
     let exponent = (low * BITS) as i32 - LOWEST;
     let half = exponent / 2;
     (high | below) as f64 * power(half) * power(exponent - half)
 }
 
-/// 2^n, where that has a leading one.
+/// The power 2^n, for normal numbers.
 fn power(n: i32) -> f64 {
     f64::from_bits(((n + 1023) as u64) << SIGNIFICAND)
 }

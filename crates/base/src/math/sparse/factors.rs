@@ -1,31 +1,33 @@
-//! A = L Lᵀ of a sparse matrix, node by node of its tree.
+//! Factorisation A = L Lᵀ of a sparse matrix, node by node of the supernode tree.
 //!
-//! The multifrontal method: the panel of a node and the matrix behind it, which has the rows of the node, gather the entries of the
-//! matrix and what the children leave; then the columns of the panel are eliminated, and what is left goes to the parent (Duff and
-//! Reid 1983, ACM TOMS 9, 302). Subtrees of about the same work are eliminated side by side, each as one thread alone would do it.
+//! The multifrontal method: the panel of a node and the matrix of its remaining rows collect the entries of A and the
+//! update matrices of the children. The columns of the panel are eliminated, and the remaining update matrix is passed
+//! to the parent (Duff and Reid 1983, ACM TOMS 9, 302). Subtrees of similar work are eliminated in parallel, each in
+//! the same order as by one thread.
 use super::number::Number;
 use super::panel::{Rows, Target, backward, eliminate, forward, subtract_products};
 use super::tree::Tree;
 use crate::math::parallel::{sweep_each, sweep_each_chunk};
 
-/// Parts into which the work is cut at least, where there is enough of it: multiplications of one of them.
+/// Minimum number of parts into which the work is divided, if there is enough, and the minimum work of a part
+/// (multiplications).
 const PIECES: f64 = 16.0;
 const PIECE: f64 = 1e6;
-/// Right-hand sides that are solved for side by side.
+/// Number of right-hand sides that are solved together.
 const ABREAST: usize = 8;
 
-/// Entries of a matrix in the order of elimination: the lower triangle, column by column.
+/// Lower triangle of a matrix in the order of elimination, column by column.
 pub(super) struct Entries<T> {
     first: Vec<usize>,
     row: Vec<u32>,
     value: Vec<T>,
-    /// Size below which a pivot of each column may be lifted.
+    /// Pivot of each column below which a pivot may be increased.
     floor: Vec<f64>,
 }
 
 impl<T: Number> Entries<T> {
-    /// Those of the matrix with the columns `first`, `row` and `value` of its lower triangle, plus `diagonal(i)`; pivots are lifted to
-    /// `floor` of the unknowns.
+    /// Entries of the matrix whose lower triangle has the columns `first`, `row` and `value`, plus `diagonal(i)`;
+    /// pivots below `floor` of their unknown are increased to it.
     pub(super) fn of(
         tree: &Tree,
         (first, row, value): (&[usize], &[usize], &[f64]),
@@ -63,23 +65,23 @@ impl<T: Number> Entries<T> {
     }
 }
 
-/// What elimination has made of a node: its columns of L, and what is left behind them until the parent takes it.
+/// Result of the elimination of a node: its columns of L, and the update matrix until the parent takes it.
 struct Front<T> {
     panel: Vec<T>,
     rest: Vec<T>,
 }
 
-/// Fronts of some nodes, each with its number; `None` where a pivot is none.
+/// Fronts of some nodes, each with the index of its node; `None` if a pivot is not valid.
 type Fronts<T> = Option<Vec<(usize, Front<T>)>>;
 
-/// A = L Lᵀ.
+/// The factorisation A = L Lᵀ.
 pub(super) struct Factored<T> {
     tree: Tree,
     panels: Vec<Vec<T>>,
 }
 
 impl<T: Number> Factored<T> {
-    /// Factors of a matrix with these entries; `None` where a pivot is none.
+    /// Factors the matrix with these entries; `None` if a pivot is not valid.
     pub(super) fn of(tree: Tree, entries: &Entries<T>) -> Option<Self> {
         let pieces = pieces(&tree);
         let mut found: Vec<Fronts<T>> = pieces.iter().map(|_| None).collect();
@@ -94,7 +96,7 @@ impl<T: Number> Factored<T> {
         Some(Self { tree, panels })
     }
 
-    /// Replaces the columns of `x`, one after another, by what A takes to them.
+    /// Replaces the columns of `x`, stored one after another, by A⁻¹ times these columns.
     pub(super) fn solve(&self, x: &mut [T]) {
         let n = self.tree.order.len();
         let columns = x.len() / n.max(1);
@@ -105,7 +107,7 @@ impl<T: Number> Factored<T> {
         }
     }
 
-    /// The same for up to `R` columns; `R` times `G` numbers are summed side by side.
+    /// Solves as [`Factored::solve`] for up to `R` columns; `R` times `G` numbers are summed together.
     fn solve_abreast<const R: usize, const G: usize>(&self, x: &mut [T]) {
         let tree = &self.tree;
         let n = tree.order.len();
@@ -139,7 +141,7 @@ impl<T: Number> Factored<T> {
     }
 }
 
-/// Nodes of subtrees that can be eliminated side by side, children first; what is above them is left out.
+/// Nodes of subtrees that can be eliminated in parallel, children first, without the nodes above them.
 fn pieces(tree: &Tree) -> Vec<Vec<usize>> {
     let mut work: Vec<f64> = (0..tree.len()).map(|s| tree.work(s)).collect();
     let mut start: Vec<usize> = (0..tree.len()).collect();
@@ -172,7 +174,7 @@ fn pieces(tree: &Tree) -> Vec<Vec<usize>> {
     pieces
 }
 
-/// Eliminates nodes, children before parents, of which some may be done; gives all of them.
+/// Eliminates nodes, children before parents, starting from those in `done`; returns all of them.
 fn eliminate_nodes<T: Number>(
     tree: &Tree,
     entries: &Entries<T>,
@@ -202,7 +204,7 @@ fn eliminate_nodes<T: Number>(
     Some(done)
 }
 
-/// The front of node `s` with the entries of the matrix; `place` becomes the place of each row in it.
+/// The front of node `s` with the entries of the matrix; `place` becomes the position of each row in it.
 fn gathered<T: Number>(tree: &Tree, entries: &Entries<T>, s: usize, place: &mut [u32]) -> Front<T> {
     let (columns, rows) = (tree.columns(s), tree.rows(s));
     let (k, r) = (columns.len(), rows.len());
@@ -217,7 +219,7 @@ fn gathered<T: Number>(tree: &Tree, entries: &Entries<T>, s: usize, place: &mut 
     front
 }
 
-/// Adds what a child leaves, which has these rows, to a front with `k` columns of its own.
+/// Adds the update matrix of a child, for the given rows, to a front with `k` columns of its own.
 fn add_rest<T: Number>(front: &mut Front<T>, k: usize, rest: &[T], (rows, place): (&[u32], &[u32])) {
     let at: Vec<usize> = rows.iter().map(|i| place[*i as usize] as usize).collect();
     let behind = front.rest.len().isqrt();

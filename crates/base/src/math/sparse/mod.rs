@@ -1,4 +1,5 @@
-//! Sparse symmetric matrices and their factors: Cholesky's, and of complex ones those of elimination.
+//! Sparse symmetric matrices and their direct factorisation: Cholesky for real matrices, LLᵀ elimination for complex
+//! ones.
 mod factors;
 mod number;
 mod ordering;
@@ -11,14 +12,14 @@ use self::factors::{Entries, Factored};
 use self::tree::Tree;
 use super::lanczos::start;
 
-/// A symmetric matrix: its lower triangle, column by column.
+/// A sparse symmetric matrix, stored as its lower triangle, column by column.
 #[derive(Clone, Debug, Default)]
 pub struct Symmetric {
-    /// Where each column begins; one more than there are columns.
+    /// Start of each column, followed by the number of entries.
     pub first: Vec<usize>,
-    /// Rows, ascending in a column.
+    /// Row of each entry, ascending within a column.
     pub row: Vec<usize>,
-    /// Values.
+    /// Value of each entry.
     pub value: Vec<f64>,
 }
 
@@ -28,12 +29,12 @@ impl Symmetric {
         self.first.len().saturating_sub(1)
     }
 
-    /// True when there are no columns.
+    /// True if there are no columns.
     pub fn is_empty(&self) -> bool {
         self.len() == 0
     }
 
-    /// out = A x.
+    /// Computes out = A x.
     pub fn product(&self, x: &[f64], out: &mut [f64]) {
         out.fill(0.0);
         for column in 0..self.len() {
@@ -47,7 +48,7 @@ impl Symmetric {
         }
     }
 
-    /// A = L Lᵀ; `None` where the matrix is not positive.
+    /// Cholesky factorisation A = L Lᵀ; `None` if the matrix is not positive definite.
     pub fn factor(self) -> Option<Factors> {
         let tree = Tree::of(&self.first, &self.row);
         let entries = Entries::of(&tree, self.columns(), |_| 0.0, &vec![0.0; self.len()]);
@@ -56,10 +57,10 @@ impl Symmetric {
         Factored::of(tree, &entries).map(|of| Factors { of, n, entries: self.value.len() })
     }
 
-    /// Factors of A + diag(z), z complex numbers; `None` where that is singular.
+    /// Factors A + diag(z) for complex z; `None` if the matrix is singular.
     ///
-    /// Pivots are taken as they come, lifted where they are too small; what that costs is found again by refinement, and a matrix for
-    /// which it is not is refused.
+    /// There is no pivoting; pivots that are too small are increased. Iterative refinement corrects the resulting
+    /// error, and a matrix for which it does not converge is rejected.
     pub fn factor_with(&self, diagonal: &[[f64; 2]]) -> Option<ComplexFactors> {
         let matrix = Shifted { matrix: self.clone(), diagonal: diagonal.iter().map(|z| complex(*z)).collect() };
         let floor: Vec<f64> = matrix.sizes().iter().map(|size| LIFTED * size).collect();
@@ -76,28 +77,30 @@ impl Symmetric {
     }
 }
 
-/// Part of the largest entry of a row to which a smaller pivot of a complex matrix is lifted: half the digits, which refinement
-/// brings back (Li and Demmel 2003, ACM TOMS 29, 110).
+/// Smallest ratio of a pivot of a complex matrix to the largest entry of its row; smaller pivots are increased to it.
+/// It is about the square root of round-off, and refinement restores the lost digits (Li and Demmel 2003, ACM TOMS 29,
+/// 110).
 const LIFTED: f64 = 1.5e-8;
-/// Residual, over the sizes of the numbers that it is summed of, at which refinement ends: what pivoting would leave.
+/// Ratio of the residual to the magnitude of its terms at which refinement ends: the accuracy of elimination with
+/// pivoting.
 const ENOUGH: f64 = 1e-13;
-/// The same of a matrix that cannot be solved with.
+/// Ratio of the residual to the magnitude of its terms above which a matrix is rejected.
 const REFUSED: f64 = 1e-10;
-/// Corrections after which refinement ends.
+/// Maximum number of refinement steps.
 const CORRECTIONS: usize = 8;
 
 fn complex([re, im]: [f64; 2]) -> Complex64 {
     Complex64::new(re, im)
 }
 
-/// A + diag(z).
+/// The matrix A + diag(z).
 struct Shifted {
     matrix: Symmetric,
     diagonal: Vec<Complex64>,
 }
 
 impl Shifted {
-    /// Largest size of an entry in each row.
+    /// Largest modulus of an entry in each row.
     fn sizes(&self) -> Vec<f64> {
         let mut sizes = vec![0.0f64; self.diagonal.len()];
         self.visit(|r, c, value| {
@@ -118,7 +121,7 @@ impl Shifted {
         }
     }
 
-    /// b − (A + diag(z)) x, and the sizes of the numbers that each row is summed of.
+    /// Residual b − (A + diag(z)) x, and the magnitude of its terms in each row.
     fn residual(&self, x: &[Complex64], b: &[Complex64]) -> (Vec<Complex64>, Vec<f64>) {
         let mut sizes: Vec<f64> = b.iter().map(Complex64::l1_norm).collect();
         let mut r = b.to_vec();
@@ -136,28 +139,28 @@ impl Shifted {
     }
 }
 
-/// Factors of a complex sparse matrix.
+/// Factors of a complex sparse symmetric matrix.
 pub struct ComplexFactors {
     of: Factored<Complex64>,
     matrix: Shifted,
 }
 
 impl ComplexFactors {
-    /// Bytes of the matrix that was factored: its factors hold several times as many.
+    /// Memory of the matrix that was factored (bytes); its factors need several times as much.
     pub fn bytes(&self) -> usize {
         let entries = 2 * self.matrix.matrix.value.len() - self.matrix.diagonal.len();
         entries * (size_of::<Complex64>() + size_of::<usize>())
     }
 
-    /// Replaces the complex numbers `x` by what A takes to them.
+    /// Replaces the complex vector `x` by A⁻¹ x.
     pub fn solve(&mut self, x: &mut [[f64; 2]]) {
         let mut all: Vec<Complex64> = x.iter().map(|x| complex(*x)).collect();
         self.refined(&mut all);
         x.iter_mut().zip(all).for_each(|(x, z)| *x = [z.re, z.im]);
     }
 
-    /// The same with what is left: the largest residual of a row over the sizes of the numbers that it is summed of (Oettli and
-    /// Prager 1964; Golub and Van Loan, 4th edition, section 3.5.3).
+    /// Replaces `x` by A⁻¹ x with iterative refinement, and returns the largest ratio of a residual to the magnitude of
+    /// its terms (Oettli and Prager 1964; Golub and Van Loan, 4th edition, section 3.5.3).
     fn refined(&self, x: &mut Vec<Complex64>) -> f64 {
         let right = x.clone();
         self.of.solve(x);
@@ -189,12 +192,12 @@ pub struct Factors {
 }
 
 impl Factors {
-    /// Bytes of the matrix that was factored: its factors hold several times as many.
+    /// Memory of the matrix that was factored (bytes); its factors need several times as much.
     pub fn bytes(&self) -> usize {
         self.entries * (size_of::<f64>() + size_of::<usize>())
     }
 
-    /// Replaces the columns of `x`, one after another, by what A takes to them.
+    /// Replaces the columns of `x`, stored one after another, by A⁻¹ times these columns.
     pub fn solve(&self, x: &mut [f64]) {
         debug_assert!(x.len().is_multiple_of(self.n.max(1)));
         self.of.solve(x);

@@ -1,34 +1,35 @@
-//! The numbers that sparse matrices are made of: real and complex ones, side by side in strips for the processor.
+//! Number types of sparse matrices, real and complex, packed in strips for vector instructions.
 use std::ops::{Add, AddAssign, Mul, Sub, SubAssign};
 
 use num_complex::Complex64;
 
-/// Columns of a tile.
+/// Number of columns of a tile.
 pub(super) const WIDE: usize = 4;
-/// Most numbers in a tile.
+/// Maximum number of values in a tile.
 pub(super) const TILE: usize = 32;
 
 /// A real or complex number.
 pub(super) trait Number:
     Copy + Send + Sync + Add<Output = Self> + AddAssign + Sub<Output = Self> + SubAssign + Mul<Output = Self> + 'static
 {
-    /// Zero.
+    /// The number zero.
     const ZERO: Self;
-    /// Rows of a strip, a multiple of [`WIDE`].
+    /// Number of rows of a strip, a multiple of [`WIDE`].
     const ROWS: usize;
-    /// Real numbers in a number.
+    /// Number of real components of a value.
     const PARTS: usize;
 
-    /// A real number as one of these.
+    /// The real number `x` in this type.
     fn real(x: f64) -> Self;
-    /// Square root of a pivot; `None` where elimination ends. A pivot below `floor`, a positive number, may be lifted to it.
+    /// Square root of a pivot; `None` if elimination cannot continue. A pivot below `floor`, a positive number, may be
+    /// increased to it.
     fn root(self, floor: f64) -> Option<Self>;
-    /// 1/x.
+    /// Reciprocal 1/x.
     fn inverse(self) -> Self;
-    /// Writes the number into lane `lane` of one column of a strip.
+    /// Writes the value into lane `lane` of one column of a strip.
     fn put(self, strip: &mut [f64], lane: usize);
-    /// Products of all rows of strip `a` with rows `from..from + WIDE` of strip `b`, summed over their columns, column by column of
-    /// the tile; `FUSED` where the processor multiplies and adds in one.
+    /// Products of all rows of strip `a` with rows `from..from + WIDE` of strip `b`, summed over their columns and
+    /// stored column by column in `tile`; `FUSED` selects fused multiply-add instructions.
     fn tile<const FUSED: bool>(a: &[f64], b: &[f64], from: usize, tile: &mut [Self; TILE]);
 }
 

@@ -1,22 +1,22 @@
-//! Order of elimination with little fill: approximate minimum degree on the quotient graph.
+//! Fill-reducing elimination order: approximate minimum degree on the quotient graph.
 //!
-//! Eliminating a variable joins its neighbours to one another. The quotient graph keeps such a clique as one *element*, a list of
-//! variables, instead of its edges; an element that lies in another is dropped, and variables with the same neighbours go on as one
-//! with their weight. The variable with the smallest bound on its degree comes next (Amestoy, Davis and Duff 1996, SIAM J. Matrix
-//! Anal. Appl. 17, 886; Davis 2006, *Direct Methods for Sparse Linear Systems*, section 7.1). Ties are broken by number alone, so that
-//! a graph has one order.
+//! Elimination of a variable connects all its neighbours. The quotient graph stores such a clique as one *element*, a
+//! list of variables, instead of its edges. An element that is contained in another is removed, and variables with the
+//! same neighbours are merged into one with their total weight. The variable with the smallest bound on its degree is
+//! eliminated next (Amestoy, Davis and Duff 1996, SIAM J. Matrix Anal. Appl. 17, 886; Davis 2006, *Direct Methods for
+//! Sparse Linear Systems*, section 7.1). Ties are resolved by index, so that the order of a graph is unique.
 
-/// None, of numbers of vertices.
+/// Index that means "none".
 const NONE: u32 = u32::MAX;
 
-/// Undirected graph whose vertices stand for one or more unknowns each.
+/// Undirected graph, each vertex of which represents one or more unknowns.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Graph {
-    /// Where the neighbours of each vertex begin; one more than there are vertices.
+    /// Start of the neighbours of each vertex, followed by the number of all neighbours.
     pub(super) first: Vec<usize>,
     /// Neighbours of all vertices.
     pub(super) near: Vec<u32>,
-    /// Unknowns of each vertex.
+    /// Number of unknowns of each vertex.
     pub(super) weight: Vec<u32>,
 }
 
@@ -32,7 +32,7 @@ impl Graph {
     }
 }
 
-/// Vertices in the order in which they are eliminated.
+/// Vertices in their order of elimination.
 pub(super) fn minimum_degree(graph: &Graph) -> Vec<u32> {
     let mut quotient = Quotient::of(graph);
     let mut pivots = Vec::new();
@@ -40,7 +40,7 @@ pub(super) fn minimum_degree(graph: &Graph) -> Vec<u32> {
         quotient.eliminate(pivot);
         pivots.push(pivot);
     }
-    // a pivot is followed by those that were joined to it, and those joined to these
+    // a pivot is followed by the variables merged into it, and by those merged into these
     let (mut order, mut open) = (Vec::with_capacity(graph.len()), Vec::new());
     for pivot in pivots {
         open.push(pivot);
@@ -52,29 +52,29 @@ pub(super) fn minimum_degree(graph: &Graph) -> Vec<u32> {
     order
 }
 
-/// What is left of a graph while its vertices are eliminated.
+/// State of a graph during the elimination.
 struct Quotient {
-    /// Unknowns of each variable; zero of those that are eliminated or joined to another.
+    /// Number of unknowns of each variable; zero for eliminated or merged variables.
     weight: Vec<u32>,
-    /// Neighbours of each variable by edges that lie in no element.
+    /// Neighbours of each variable by edges that belong to no element.
     edges: Vec<Vec<u32>>,
-    /// Elements that each variable lies in.
+    /// Elements of each variable.
     elements: Vec<Vec<u32>>,
-    /// Variables of each element; elements have the number of their pivot.
+    /// Variables of each element; elements have the index of their pivot.
     variables: Vec<Vec<u32>>,
-    /// Unknowns of the variables of each element; zero of those that are dropped.
+    /// Number of unknowns of each element; zero for removed elements.
     size: Vec<u32>,
-    /// Bound on the unknowns beside each variable.
+    /// Upper bound on the degree of each variable, in unknowns.
     degree: Vec<u32>,
-    /// Variables that were joined to each one.
+    /// Variables that were merged into each one.
     joined: Vec<Vec<u32>>,
-    /// Unknowns not yet eliminated.
+    /// Number of unknowns not yet eliminated.
     left: u32,
-    /// Variables of each degree, as lists that are linked both ways.
+    /// Variables of each degree, as doubly linked lists.
     head: Vec<u32>,
     links: Vec<[u32; 2]>,
     smallest: usize,
-    /// Marks of variables, and of elements with what lies outside of the one that is made.
+    /// Marks of variables and, for elements, of their unknowns outside the new element.
     mark: Vec<u32>,
     stamp: u32,
     outside: Vec<(u32, u32)>,
@@ -105,7 +105,7 @@ impl Quotient {
         quotient
     }
 
-    /// Puts variable `i` at the head of the list of its degree.
+    /// Inserts variable `i` at the head of the list of its degree.
     fn enter(&mut self, i: usize) {
         let degree = self.degree[i] as usize;
         let next = std::mem::replace(&mut self.head[degree], i as u32);
@@ -116,7 +116,7 @@ impl Quotient {
         self.smallest = self.smallest.min(degree);
     }
 
-    /// Takes variable `i` from its list.
+    /// Removes variable `i` from its list.
     fn leave(&mut self, i: usize) {
         let [before, next] = self.links[i];
         match before {
@@ -128,7 +128,7 @@ impl Quotient {
         }
     }
 
-    /// A variable of smallest degree, out of its list.
+    /// Removes a variable of smallest degree from its list and returns it.
     fn next_pivot(&mut self) -> Option<usize> {
         while self.smallest < self.head.len() {
             match self.head[self.smallest] {
@@ -142,7 +142,7 @@ impl Quotient {
         None
     }
 
-    /// Makes an element of the neighbours of `pivot`, and brings what is beside it up to date.
+    /// Makes an element of the neighbours of `pivot`, and updates the adjacent variables and elements.
     fn eliminate(&mut self, pivot: usize) {
         let mut members = self.members(pivot);
         let size: u32 = members.iter().map(|i| self.weight[*i as usize]).sum();
@@ -166,7 +166,7 @@ impl Quotient {
         self.variables[pivot] = members;
     }
 
-    /// Neighbours of `pivot`, marked; the elements that it lies in are dropped.
+    /// Neighbours of `pivot`, marked; the elements that contain it are removed.
     fn members(&mut self, pivot: usize) -> Vec<u32> {
         self.stamp += 1;
         self.mark[pivot] = self.stamp;
@@ -185,7 +185,7 @@ impl Quotient {
         members
     }
 
-    /// Unknowns that each element beside `members` has outside of them.
+    /// Counts the unknowns of each adjacent element that are outside of `members`.
     fn measure_overlaps(&mut self, members: &[u32]) {
         for i in members {
             for e in &self.elements[*i as usize] {
@@ -199,8 +199,9 @@ impl Quotient {
         }
     }
 
-    /// Lists and degree of variable `i` of the element that `pivot` becomes, whose variables have `size` unknowns; gives a number
-    /// that is the same for variables with the same neighbours, `None` for one that has none but those of the element.
+    /// Updates lists and degree of variable `i` in the new element of `pivot`, whose variables have `size` unknowns.
+    /// Returns a hash that is equal for variables with the same neighbours; `None` if all neighbours are in the
+    /// element.
     fn update(&mut self, i: usize, pivot: usize, size: u32) -> Option<u64> {
         let (mut degree, mut hash) = (0, 0u64);
         let Self { elements, edges, outside, size: sizes, weight, mark, stamp, .. } = self;
@@ -230,7 +231,7 @@ impl Quotient {
         Some(hash)
     }
 
-    /// Lets variable `j` go on as part of `i`.
+    /// Merges variable `j` into `i`.
     fn join(&mut self, j: usize, i: usize) {
         self.weight[i] += std::mem::take(&mut self.weight[j]);
         self.joined[i].push(j as u32);
@@ -238,7 +239,7 @@ impl Quotient {
         self.elements[j] = Vec::new();
     }
 
-    /// Joins those variables of one element that have the same neighbours.
+    /// Merges variables of one element that have the same neighbours.
     fn join_alike(&mut self, hashes: &mut [(u64, u32)]) {
         hashes.sort_unstable();
         for same in hashes.chunk_by(|a, b| a.0 == b.0).filter(|same| same.len() > 1) {
@@ -249,7 +250,7 @@ impl Quotient {
                 }
                 self.stamp += 1;
                 let stamp = self.stamp;
-                // numbers of elements are those of pivots, which are no variables any more
+                // element indices are indices of pivots, which are no longer variables
                 self.edges[i].iter().chain(&self.elements[i]).for_each(|j| self.mark[*j as usize] = stamp);
                 for (_, j) in &same[k + 1..] {
                     let j = *j as usize;
@@ -271,7 +272,7 @@ impl Quotient {
 mod tests {
     use super::*;
 
-    /// The graph of a lattice of `n` × `n` vertices.
+    /// Graph of a lattice of `n` × `n` vertices.
     fn lattice(n: usize) -> Graph {
         let mut graph = Graph { first: vec![0], near: Vec::new(), weight: vec![1; n * n] };
         for i in 0..n * n {

@@ -1,35 +1,35 @@
-//! Elimination inside one dense panel, column by column of storage, and what it takes off the matrix behind it.
+//! Elimination of one dense panel, stored column by column, and the update of the matrix behind it.
 //!
-//! A panel of m rows and k columns becomes that of L in A = L Lᵀ by halves: the left half is eliminated, its products are taken off
-//! the right half, which follows (Golub and Van Loan, 4th edition, section 4.2.6). Products run over tiles that the processor keeps
-//! in registers, of strips that are packed for it (Goto and van de Geijn 2008, ACM TOMS 34, 12).
+//! A panel of m rows and k columns is factored to L of A = L Lᵀ recursively: the left half is eliminated, its products
+//! are subtracted from the right half, and then the right half is eliminated (Golub and Van Loan, 4th edition, section
+//! 4.2.6). Products use register tiles of packed strips (Goto and van de Geijn 2008, ACM TOMS 34, 12).
 use multiversion::multiversion;
 use multiversion::target::target_cfg_f;
 
 use super::number::{Number, TILE, WIDE};
 use crate::math::parallel::sweep_each_chunk;
 
-/// Columns that are eliminated one by one.
+/// Number of columns that are eliminated one by one.
 const NARROW: usize = 8;
-/// Columns of L whose products are taken off at a time: a strip of them fits into the first cache.
+/// Number of columns of L whose products are subtracted together: a strip of them fits into the first-level cache.
 const DEPTH: usize = 192;
-/// Rows whose strips fit into the second cache.
+/// Number of rows whose strips fit into the second-level cache.
 const HIGH: usize = 192;
-/// Columns that a thread takes at a time, a multiple of the rows of a strip.
+/// Number of columns that a thread processes at a time, a multiple of the rows of a strip.
 const SHARE: usize = 48;
-/// Multiplications below which packing does not pay, and beyond which work is shared out.
+/// Number of multiplications below which packing does not pay, and number above which work is distributed over threads.
 const PACKED: usize = 4096;
 const SHARED: usize = 1 << 20;
 
-/// Part of a matrix, stored column by column: the rows from `from` of columns that are `step` apart.
+/// Part of a matrix stored column by column: the rows from `from` on of columns with the stride `step`.
 pub(super) struct Target<'a, T> {
     pub(super) values: &'a mut [T],
     pub(super) step: usize,
     pub(super) from: usize,
 }
 
-/// Replaces the `k` columns, of `m` rows, of `panel` by those of L; only what is on and below the diagonal counts. `None` where a
-/// pivot is none; `floor` has the sizes that pivots may be lifted to.
+/// Replaces the `k` columns of `panel`, with `m` rows each, by those of L; entries above the diagonal are ignored.
+/// `None` if a pivot is not valid; `floor` holds the values to which pivots may be increased.
 pub(super) fn eliminate<T: Number>(panel: &mut [T], m: usize, floor: &[f64]) -> Option<()> {
     halves(panel, m, (0, floor.len()), floor)
 }
@@ -47,7 +47,7 @@ fn halves<T: Number>(panel: &mut [T], m: usize, (from, to): (usize, usize), floo
     halves(panel, m, (middle, to), floor)
 }
 
-/// Eliminates few columns, whose diagonal begins in row `from`.
+/// Eliminates a few columns, whose diagonal begins in row `from`.
 #[multiversion(targets("x86_64+avx2+fma"))]
 #[allow(unsafe_code, reason = "the attribute calls the version that the processor has just been asked for")]
 fn narrow<T: Number>(columns: &mut [T], m: usize, from: usize, floor: &[f64]) -> Option<()> {
@@ -67,7 +67,8 @@ fn narrow<T: Number>(columns: &mut [T], m: usize, from: usize, floor: &[f64]) ->
     Some(())
 }
 
-/// Takes L Lᵀ off `target`, on and below its diagonal at least, for the rows of L, columns of `m` rows, from `row` on.
+/// Subtracts L Lᵀ from `target`, at least on and below its diagonal, for the rows of L from `row` on; columns of L have
+/// `m` rows.
 pub(super) fn subtract_products<T: Number>(l: &[T], m: usize, row: usize, target: Target<'_, T>) {
     let Target { values, step, from } = target;
     let (depth, width, height) = (l.len() / m, values.len() / step, m - row);
@@ -91,7 +92,7 @@ pub(super) fn subtract_products<T: Number>(l: &[T], m: usize, row: usize, target
     }
 }
 
-/// One strip of rows from `row` on, column after column.
+/// Packs one strip of rows from `row` on, column after column.
 fn pack<T: Number>(columns: &[T], m: usize, row: usize, strip: &mut [f64]) {
     let end = (row + T::ROWS).min(m);
     for (column, out) in columns.chunks_exact(m).zip(strip.chunks_exact_mut(T::ROWS * T::PARTS)) {
@@ -112,7 +113,7 @@ fn directly<T: Number>(l: &[T], m: usize, row: usize, target: Target<'_, T>) {
     }
 }
 
-/// The same for columns of `target` that begin with number `first` of `height`, of packed strips.
+/// Subtracts the products of packed strips from columns of `target`, which begin with index `first` of `height`.
 #[multiversion(targets("x86_64+avx2+fma"))]
 #[allow(unsafe_code, reason = "the attribute calls the version that the processor has just been asked for")]
 fn subtract_tiles<T: Number>(packed: &[f64], size: usize, (first, height): (usize, usize), target: Target<'_, T>) {
@@ -132,7 +133,7 @@ fn subtract_tiles<T: Number>(packed: &[f64], size: usize, (first, height): (usiz
                     T::tile::<false>(a, b, column % T::ROWS, &mut tile);
                 }
                 let rows = T::ROWS.min(height - top);
-                // rows above the diagonal of the target may not exist, and count for nothing
+                // rows above the diagonal of the target may not exist, and are skipped
                 for (out, tile) in columns.chunks_exact_mut(step).zip(tile.chunks_exact(T::ROWS)) {
                     let out = &mut out[from + top..from + top + rows];
                     out.iter_mut().zip(tile).for_each(|(x, t)| *x -= *t);
@@ -142,10 +143,10 @@ fn subtract_tiles<T: Number>(packed: &[f64], size: usize, (first, height): (usiz
     }
 }
 
-/// Right-hand sides side by side that solutions are found for at a time, and rows that are summed side by side.
+/// One row of several right-hand sides that are solved together.
 pub(super) type Rows<T, const R: usize> = [T; R];
 
-/// x ← L⁻¹ x in the first `k` rows, and what these take off the rows below.
+/// Computes x ← L⁻¹ x in the first `k` rows and subtracts their contribution from the rows below.
 #[multiversion(targets("x86_64+avx2+fma"))]
 #[allow(unsafe_code, reason = "the attribute calls the version that the processor has just been asked for")]
 pub(super) fn forward<T: Number, const R: usize>(panel: &[T], k: usize, x: &mut [Rows<T, R>]) {
@@ -175,7 +176,7 @@ pub(super) fn forward<T: Number, const R: usize>(panel: &[T], k: usize, x: &mut 
     }
 }
 
-/// x ← L⁻ᵀ x in the first `k` rows, where those below are known; sums run over `G` rows side by side.
+/// Computes x ← L⁻ᵀ x in the first `k` rows from the known rows below; sums run over `G` rows together.
 #[multiversion(targets("x86_64+avx2+fma"))]
 #[allow(unsafe_code, reason = "the attribute calls the version that the processor has just been asked for")]
 pub(super) fn backward<T: Number, const R: usize, const G: usize>(panel: &[T], k: usize, x: &mut [Rows<T, R>]) {

@@ -1,26 +1,27 @@
-//! Which columns are eliminated together, and what rows their factors have: the tree of supernodes.
+//! Supernode tree: the columns that are eliminated together, and the rows of their factors.
 //!
-//! Unknowns with the same neighbours are put together first, and the graph of these groups is ordered. The rows of a column of the
-//! factor are those of the matrix and of the columns whose first row it is, its children; columns whose rows are the same make one
-//! *supernode*, a dense panel, and small ones are joined to their parent where that adds few zeros (Davis, Rajamanickam and
-//! Sid-Lakhdar 2016, Acta Numerica 25, 383, sections 4 and 9; limits as in CHOLMOD: Chen et al. 2008, ACM TOMS 35, 22).
+//! Unknowns with the same neighbours are combined first, and the graph of these groups is ordered. The rows of a factor
+//! column are those of the matrix column and of its children, which are the columns whose first row it is. Columns with
+//! the same rows form one *supernode*, a dense panel. Small supernodes are merged with their parent if that adds few
+//! zeros (Davis, Rajamanickam and Sid-Lakhdar 2016, Acta Numerica 25, 383, sections 4 and 9; limits as in CHOLMOD: Chen
+//! et al. 2008, ACM TOMS 35, 22).
 use std::ops::Range;
 
 use super::ordering::{Graph, minimum_degree};
 
-/// None, of numbers of nodes.
+/// Index that means "none".
 const NONE: u32 = u32::MAX;
-/// Columns of a joined node up to which a part of zeros in its panel is allowed.
+/// Maximum number of columns of a merged node, with the fraction of zeros that its panel may have.
 const ALLOWED_ZEROS: [(usize, f64); 4] = [(4, 1.0), (16, 0.8), (48, 0.1), (usize::MAX, 0.05)];
 
-/// Nodes of the tree, children before parents, and the order of unknowns that goes with them.
+/// Nodes of the tree, children before parents, and the elimination order of the unknowns.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Tree {
-    /// Unknown at each place of the order.
+    /// Unknown at each position of the order.
     pub(super) order: Vec<u32>,
-    /// First column of each node; one more than there are nodes.
+    /// First column of each node, followed by the number of columns.
     first: Vec<u32>,
-    /// Where the rows of each node begin; one more than there are nodes.
+    /// Start of the rows of each node, followed by the number of all rows.
     start: Vec<usize>,
     /// Rows of each node below its own columns, ascending.
     rows: Vec<u32>,
@@ -31,7 +32,7 @@ pub(super) struct Tree {
 }
 
 impl Tree {
-    /// That of the symmetric matrix with these columns of its lower triangle.
+    /// Supernode tree of the symmetric matrix whose lower triangle has these columns.
     pub(super) fn of(first: &[usize], row: &[usize]) -> Self {
         let (members, graph) = compressed(first, row);
         let mut nodes = supernodes(&graph, &minimum_degree(&graph));
@@ -44,7 +45,7 @@ impl Tree {
         self.parent.len()
     }
 
-    /// True when node `s` has no parent.
+    /// True if node `s` has no parent.
     pub(super) fn is_root(&self, s: usize) -> bool {
         self.parent[s] == NONE
     }
@@ -59,17 +60,17 @@ impl Tree {
         &self.rows[self.start[s]..self.start[s + 1]]
     }
 
-    /// Multiplications that the elimination of the columns of node `s` takes.
+    /// Number of multiplications to eliminate the columns of node `s`.
     pub(super) fn work(&self, s: usize) -> f64 {
         let (k, r) = (self.columns(s).len() as f64, self.rows(s).len() as f64);
         k * (r * r + k * r + k * k / 3.0)
     }
 }
 
-/// Groups of unknowns that have the same neighbours, and the graph of these groups.
+/// Groups of unknowns with the same neighbours, and the graph of these groups.
 fn compressed(first: &[usize], row: &[usize]) -> (Vec<Vec<u32>>, Graph) {
     let n = first.len().saturating_sub(1);
-    // sums of scattered numbers of the neighbours: two unknowns that share a sum by chance have the neighbours of both
+    // sums of hashes of the neighbours: two unknowns with equal sums by coincidence get the neighbours of both
     let mix = |i: usize| {
         (i as u64 + 1).wrapping_mul(0x9e37_79b9_7f4a_7c15).rotate_left(29).wrapping_mul(0xbf58_476d_1ce4_e5b9)
     };
@@ -114,30 +115,30 @@ fn compressed(first: &[usize], row: &[usize]) -> (Vec<Vec<u32>>, Graph) {
     (members, graph)
 }
 
-/// Columns that are eliminated together, in groups of unknowns.
+/// Columns that are eliminated together, as groups of unknowns.
 #[derive(Clone, Debug, Default)]
 struct Node {
-    /// Groups whose columns these are, in their order.
+    /// Groups of the columns, in their order.
     columns: Vec<u32>,
-    /// Groups of the rows below.
+    /// Groups of the rows below the columns.
     rows: Vec<u32>,
     parent: u32,
     children: Vec<u32>,
-    /// Unknowns of columns, and of rows below.
+    /// Number of unknowns of the columns, and of the rows below.
     width: usize,
     below: usize,
-    /// Zeros that are kept in the panel.
+    /// Number of zeros stored in the panel.
     zeros: f64,
     joined: bool,
 }
 
-/// Nodes of columns with the same rows, parents after their children where `last column` counts.
+/// Nodes of columns with the same rows; a parent follows its children in the order of the last columns.
 fn supernodes(graph: &Graph, order: &[u32]) -> Vec<Node> {
     let mut place = vec![0u32; order.len()];
     order.iter().enumerate().for_each(|(k, g)| place[*g as usize] = k as u32);
     let weight = |g: &u32| graph.weight[*g as usize] as usize;
     let mut nodes: Vec<Node> = Vec::new();
-    // nodes whose first row below a column is
+    // nodes whose first row below their columns is the given column
     let mut under: Vec<Vec<u32>> = vec![Vec::new(); order.len()];
     let mut seen = vec![NONE; order.len()];
     for (k, g) in order.iter().enumerate() {
@@ -176,7 +177,7 @@ fn supernodes(graph: &Graph, order: &[u32]) -> Vec<Node> {
     nodes
 }
 
-/// Nodes from the leaves up: children before parents.
+/// Nodes in an order from the leaves up: children before parents.
 fn from_below(nodes: &[Node]) -> Vec<u32> {
     let mut open: Vec<u32> =
         (0..nodes.len() as u32).filter(|s| nodes[*s as usize].parent == NONE && !nodes[*s as usize].joined).collect();
@@ -189,7 +190,7 @@ fn from_below(nodes: &[Node]) -> Vec<u32> {
     order
 }
 
-/// Joins nodes to their parents where the panel then has few zeros more.
+/// Merges nodes with their parents if the panel then has few additional zeros.
 fn join_small(nodes: &mut [Node]) {
     for s in from_below(nodes) {
         let p = nodes[s as usize].parent;
@@ -213,7 +214,7 @@ fn join_small(nodes: &mut [Node]) {
     }
 }
 
-/// The tree with unknowns in the place of groups.
+/// The tree in terms of unknowns instead of groups.
 fn numbered(nodes: &[Node], members: &[Vec<u32>]) -> Tree {
     let order = from_below(nodes);
     let mut tree = Tree { first: vec![0], start: vec![0], ..Tree::default() };

@@ -1,13 +1,13 @@
-//! Elastic laws: stress as the derivative of an energy of the deformation gradient F.
+//! Elastic laws: the stress is the derivative of a stored energy with respect to the deformation gradient F.
 //!
-//! P = ∂ψ/∂F with ψ per volume of the undeformed body, for three energies that agree to second order at small strain:
+//! P = ∂ψ/∂F with ψ per undeformed volume, for three energies that agree to second order at small strain:
 //!
 //! - linear: ψ = μ ε:ε + ½ λ (tr ε)², ε = sym(F − I); for small rotations only,
-//! - Saint-Venant and Kirchhoff: the same with Green's strain E = ½(FᵀF − I); for large rotations and small strains,
+//! - Saint-Venant-Kirchhoff: the same form with Green's strain E = ½(FᵀF − I); for large rotations and small strains,
 //! - neo-Hookean: ψ = ½ μ (J^(−2/3) tr(FᵀF) − 3) + ¼ K (J² − 1 − 2 ln J), J = det F; for large strains, compressible
 //!   (Simo & Hughes 1998, *Computational Inelasticity*, eq. 9.2.3, 9.2.6).
 //!
-//! All is in three dimensions: plane strain is F₃₃ = 1.
+//! All laws are three-dimensional: plane strain is F₃₃ = 1.
 use super::tensor::{self, Tensor};
 use crate::math::jet::Scalar;
 
@@ -21,7 +21,7 @@ pub struct Moduli {
 }
 
 impl Moduli {
-    /// μ = E/(2(1 + ν)) and K = E/(3(1 − 2ν)) of Young's modulus E and Poisson's ratio ν.
+    /// Moduli μ = E/(2(1 + ν)) and K = E/(3(1 − 2ν)) for Young's modulus E and Poisson's ratio ν.
     pub const fn of_young(young: f64, poisson: f64) -> Self {
         Self { shear: 0.5 * young / (1.0 + poisson), bulk: young / (3.0 * (1.0 - 2.0 * poisson)) }
     }
@@ -42,13 +42,13 @@ impl Moduli {
         (3.0 * self.bulk - 2.0 * self.shear) / (6.0 * self.bulk + 2.0 * self.shear)
     }
 
-    /// Modulus of pressure waves K + 4/3 μ.
+    /// Modulus of pressure waves K + 4/3 μ (P-wave modulus).
     pub const fn pressure_wave(&self) -> f64 {
         self.bulk + self.shear * (4.0 / 3.0)
     }
 }
 
-/// Stress of linear elasticity, P = 2μ ε + λ tr ε I with ε = sym(F − I).
+/// First Piola-Kirchhoff stress of linear elasticity, P = 2μ ε + λ tr ε I with ε = sym(F − I).
 #[inline(always)]
 pub fn linear<S: Scalar>(m: &Moduli, f: &Tensor<S>) -> Tensor<S> {
     let strain = small_strain(f);
@@ -56,13 +56,13 @@ pub fn linear<S: Scalar>(m: &Moduli, f: &Tensor<S>) -> Tensor<S> {
     tensor::plus_identity(&tensor::times(&strain, S::constant(2.0 * m.shear)), mean)
 }
 
-/// Energy of linear elasticity per reference volume, μ ε:ε + ½ λ (tr ε)².
+/// Energy of linear elasticity per undeformed volume, μ ε:ε + ½ λ (tr ε)².
 #[inline(always)]
 pub fn linear_energy<S: Scalar>(m: &Moduli, f: &Tensor<S>) -> S {
     quadratic(m, &small_strain(f))
 }
 
-/// Stress of Saint-Venant and Kirchhoff, P = F (2μ E + λ tr E I) with Green's strain E = ½(FᵀF − I).
+/// First Piola-Kirchhoff stress of the Saint-Venant-Kirchhoff law, P = F (2μ E + λ tr E I) with E = ½(FᵀF − I).
 #[inline(always)]
 pub fn saint_venant_kirchhoff<S: Scalar>(m: &Moduli, f: &Tensor<S>) -> Tensor<S> {
     let strain = green_strain(f);
@@ -70,13 +70,14 @@ pub fn saint_venant_kirchhoff<S: Scalar>(m: &Moduli, f: &Tensor<S>) -> Tensor<S>
     tensor::product(f, &tensor::plus_identity(&tensor::times(&strain, S::constant(2.0 * m.shear)), mean))
 }
 
-/// Energy of Saint-Venant and Kirchhoff per reference volume, μ E:E + ½ λ (tr E)².
+/// Energy of the Saint-Venant-Kirchhoff law per undeformed volume, μ E:E + ½ λ (tr E)².
 #[inline(always)]
 pub fn saint_venant_kirchhoff_energy<S: Scalar>(m: &Moduli, f: &Tensor<S>) -> S {
     quadratic(m, &green_strain(f))
 }
 
-/// Stress of the neo-Hookean solid, P = μ J^(−2/3) (F − ⅓ tr(FᵀF) F⁻ᵀ) + ½ K (J² − 1) F⁻ᵀ; NaN where J ≤ 0.
+/// First Piola-Kirchhoff stress of the neo-Hookean law, P = μ J^(−2/3) (F − ⅓ tr(FᵀF) F⁻ᵀ) + ½ K (J² − 1) F⁻ᵀ; NaN if J
+/// ≤ 0.
 #[inline(always)]
 pub fn neo_hookean<S: Scalar>(m: &Moduli, f: &Tensor<S>) -> Tensor<S> {
     let cofactor = tensor::cofactor(f);
@@ -87,12 +88,12 @@ pub fn neo_hookean<S: Scalar>(m: &Moduli, f: &Tensor<S>) -> Tensor<S> {
     tensor::of(|i, j| shear * f[i][j] + along * cofactor[i][j])
 }
 
-/// Energy of the neo-Hookean solid per reference volume, ½ μ (J^(−2/3) tr(FᵀF) − 3) + ¼ K (J² − 1 − 2 ln J); of small strains, whose
-/// squares are below the round-off of one, it keeps its digits.
+/// Energy of the neo-Hookean law per undeformed volume, ½ μ (J^(−2/3) tr(FᵀF) − 3) + ¼ K (J² − 1 − 2 ln J). It is
+/// accurate for small strains too, whose squares are below the round-off of 1.
 #[inline(always)]
 pub fn neo_hookean_energy<S: Scalar>(m: &Moduli, f: &Tensor<S>) -> S {
     let excess = excess_volume(f);
-    // with tr(FᵀF) = 3 + 2 tr E
+    // because tr(FᵀF) = 3 + 2 tr E
     let less = excess.map(|e| {
         let (j, less) = (1.0 + e, (-2.0 / 3.0 * e.ln_1p()).exp_m1());
         let slope = -2.0 / 3.0 * (1.0 + less) / j;
@@ -103,7 +104,7 @@ pub fn neo_hookean_energy<S: Scalar>(m: &Moduli, f: &Tensor<S>) -> S {
     shape * (0.5 * m.shear) + volumetric_energy(m, excess)
 }
 
-/// J − 1, from the gradient of displacement H = F − I: tr H + ½ ((tr H)² − tr H²) + det H.
+/// J − 1 from the displacement gradient H = F − I: tr H + ½ ((tr H)² − tr H²) + det H.
 #[inline(always)]
 pub(super) fn excess_volume<S: Scalar>(f: &Tensor<S>) -> S {
     let h = tensor::plus_identity(f, S::constant(-1.0));
@@ -111,11 +112,11 @@ pub(super) fn excess_volume<S: Scalar>(f: &Tensor<S>) -> S {
     tensor::trace(&h) + (minor(0, 1) + minor(1, 2) + minor(2, 0)) + tensor::determinant(&h)
 }
 
-/// Energy of a change of volume, ¼ K (J² − 1 − 2 ln J), from e = J − 1.
+/// Volumetric energy ¼ K (J² − 1 − 2 ln J) from e = J − 1.
 #[inline(always)]
 pub(super) fn volumetric_energy<S: Scalar>(m: &Moduli, excess: S) -> S {
     let energy = excess.map(|e| {
-        // J² − 1 − 2 ln J = e² + 2 (e − ln(1 + e)); of small e the series of the second term
+        // J² − 1 − 2 ln J = e² + 2 (e − ln(1 + e)); for small e, the second term is computed by its series
         let left = match e.abs() < SMALL {
             true => e * e * (0.5 - e * (1.0 / 3.0 - e * (0.25 - e * (0.2 - e / 6.0)))),
             false => e - e.ln_1p(),
@@ -126,50 +127,51 @@ pub(super) fn volumetric_energy<S: Scalar>(m: &Moduli, excess: S) -> S {
     energy * (0.25 * m.bulk)
 }
 
-/// Change of volume below which five terms of the series of its energy are all its digits.
+/// Limit of J − 1 below which five terms of this series are accurate to round-off.
 const SMALL: f64 = 1e-3;
 
-/// Strain of small displacements sym(F − I).
+/// Infinitesimal strain sym(F − I).
 #[inline(always)]
 fn small_strain<S: Scalar>(f: &Tensor<S>) -> Tensor<S> {
     tensor::plus_identity(&tensor::symmetric(f), S::constant(-1.0))
 }
 
-/// Green's strain ½(FᵀF − I), from the gradient of displacement so that small strains keep their digits.
+/// Green's strain ½(FᵀF − I), computed from the displacement gradient so that small strains remain accurate.
 #[inline(always)]
 pub(super) fn green_strain<S: Scalar>(f: &Tensor<S>) -> Tensor<S> {
     let h = tensor::plus_identity(f, S::constant(-1.0));
     tensor::of(|i, j| (h[i][j] + h[j][i] + h[0][i] * h[0][j] + h[1][i] * h[1][j] + h[2][i] * h[2][j]) * 0.5)
 }
 
-/// μ e:e + ½ λ (tr e)².
+/// Quadratic energy μ e:e + ½ λ (tr e)² of a strain e.
 #[inline(always)]
 fn quadratic<S: Scalar>(m: &Moduli, e: &Tensor<S>) -> S {
     let trace = tensor::trace(e);
     tensor::contraction(e, e) * m.shear + trace * trace * (0.5 * m.lame())
 }
 
-/// J^(−2/3), NaN where J ≤ 0.
+/// Isochoric factor J^(−2/3); NaN if J ≤ 0.
 #[inline(always)]
 pub(super) fn isochoric<S: Scalar>(volume: S) -> S {
     volume.map(|j| {
         let root = inverse_cube_root(j);
         let value = root * root;
-        // of J^(−2/3): −2/3 J^(−5/3) and 10/9 J^(−8/3), with 1/J = root³
+        // derivatives of J^(−2/3): −2/3 J^(−5/3) and 10/9 J^(−8/3), with 1/J = root³
         let over = value * root;
         [value, value * over * (-2.0 / 3.0), value * over * over * (10.0 / 9.0)]
     })
 }
 
-/// Upper word of the number whose exponent and fraction, less a third of those of x, begin x^(−1/3) within 4 %.
+/// Constant whose upper word, minus a third of the exponent and fraction of x, approximates x^(−1/3) within 4 %.
 const CUBE_ROOT_START: u64 = 0x553e_f0ff;
-/// A third of 2³², rounded up.
+/// One third of 2³², rounded up.
 const A_THIRD: u64 = 0x5555_5556;
 
-/// x^(−1/3) for normal positive x and NaN otherwise, of plain arithmetic so that loops over it become vector code.
+/// x^(−1/3) for normal positive x, and NaN otherwise; plain arithmetic, so that loops can be vectorised.
 ///
-/// The exponent is divided by minus three as an integer, and two steps of fourth order follow: the relative error falls from
-/// 4e-2 to 1e-5 and below rounding (Householder's method; start as in Lomont's inverse square root, 2003).
+/// The exponent is divided by minus three in integer arithmetic, followed by two steps of fourth order: the relative
+/// error decreases from 4e-2 to 1e-5 and to below round-off (Householder's method; initial guess as in Lomont's inverse
+/// square root, 2003).
 #[inline(always)]
 fn inverse_cube_root(x: f64) -> f64 {
     let third = ((x.to_bits() >> 32) * A_THIRD) >> 32;
@@ -254,7 +256,7 @@ mod tests {
         let e = 1e-7;
         let f = tensor::plus_identity(&random_tensor(7, e), 1.0);
         let p = linear(&STEEL, &f);
-        // they differ by squares of the strain
+        // the two laws differ by squares of the strain
         close(&saint_venant_kirchhoff(&STEEL, &f), &p, 20.0 * e * e);
         close(&neo_hookean(&STEEL, &f), &p, 20.0 * e * e + 1e-15);
     }
@@ -262,7 +264,7 @@ mod tests {
     #[test]
     fn nearly_incompressible_rubber_keeps_its_digits() {
         let m = Moduli::of_young(1.0, 0.4999);
-        // shape changes, volume does not: a pressure appears only through rounding
+        // a volume-preserving change of shape: pressure results from rounding only
         let f = [[2.0, 0.3, 0.0], [0.0, 0.5, 0.0], [0.0, 0.0, 1.0]];
         let p = neo_hookean(&m, &f);
         let tau = tensor::product_transposed(&p, &f);

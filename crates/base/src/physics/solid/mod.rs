@@ -14,8 +14,8 @@
 //! | [`Law::Plastic`] | plastic metric, back stress, plastic strain, temperature, work | [`plasticity`] |
 //! | [`Law::Viscoelastic`] | C and a stress per branch | [`viscoelastic`] |
 //!
-//! All is in three dimensions: plane strain is F₃₃ = 1, plane stress [`plane_stress()`]. Numbers are in SI units, or in any
-//! units that agree. [`library`] holds materials by name.
+//! All laws are three-dimensional: plane strain is F₃₃ = 1, plane stress [`plane_stress()`]. Values are in SI units, or
+//! in any consistent units. [`library`] is the catalogue of materials.
 use crate::math::dual::Dual;
 use crate::math::jet::Scalar;
 

@@ -1,21 +1,22 @@
-//! Plasticity of metals at finite strain: von Mises' yield condition with a radial return.
+//! Finite-strain plasticity of metals: von Mises yield condition with radial return.
 //!
-//! F = Fᵉ Fᵖ; what is kept is Cᵖ⁻¹ = (FᵖᵀFᵖ)⁻¹, which a rotation of the body does not change. At a given F the trial state
-//! is b̄ = J^(−2/3) F Cᵖ⁻¹ Fᵀ, s = μ dev b̄, and with ξ = s − β, n = ξ/|ξ|, μ̄ = ⅓ μ tr b̄ the return is radial
-//! (Simo & Hughes 1998, *Computational Inelasticity*, box 9.1):
+//! F = Fᵉ Fᵖ; the history stores Cᵖ⁻¹ = (FᵖᵀFᵖ)⁻¹, which does not change with rigid rotations. For a given F, the trial
+//! state is b̄ = J^(−2/3) F Cᵖ⁻¹ Fᵀ, s = μ dev b̄. With ξ = s − β, n = ξ/|ξ|, μ̄ = ⅓ μ tr b̄ the return is radial (Simo
+//! & Hughes 1998, *Computational Inelasticity*, box 9.1):
 //!
 //! |ξ| − 2μ̄ Δγ − ⅔ H Γ = √⅔ σ_y(ε_p + √⅔ Γ, √⅔ Γ/Δt, T), s ← s − 2μ̄ Δγ n, β ← β + ⅔ H Γ n.
 //!
-//! The book has Γ = Δγ, the plastic strain to first order: b̄ grows by the squares of a step too. Γ = Δγ/(1 + Δγ tr n³) takes
-//! them out; in tension it is √⅔ Γ = ⅔ tanh(3/2 Δε) of a logarithmic strain Δε of any size.
+//! The book uses Γ = Δγ, which is the plastic strain to first order, because b̄ also contains the squares of a step. Γ
+//! = Δγ/(1 + Δγ tr n³) removes this error; in tension, √⅔ Γ = ⅔ tanh(3/2 Δε) for a logarithmic strain Δε of any
+//! magnitude.
 //!
-//! The trace of b̄ follows from det b̄ = 1, so that plastic flow keeps the volume however many steps there are. Kirchhoff's
-//! stress is τ = s + ½ K (J² − 1) I and P = τ F⁻ᵀ. The back stress β is carried along by the rotation of F, so that elastic
-//! strain stores nothing in it. Plastic work is ∫ π dγ with π = −½ μ d(tr b̄)/dγ, the loss of elastic energy at fixed F, by
-//! the trapezoidal rule; its part χ heats the solid at once, ΔT = χ Δw/(ρc) (Taylor & Quinney 1934).
+//! The trace of b̄ follows from det b̄ = 1, so that plastic flow conserves volume for any number of steps. The
+//! Kirchhoff stress is τ = s + ½ K (J² − 1) I and P = τ F⁻ᵀ. The back stress β rotates with F, so that elastic strain
+//! stores no energy in it. The plastic work is ∫ π dγ with π = −½ μ d(tr b̄)/dγ, the loss of elastic energy at fixed F,
+//! by the trapezoidal rule; its fraction χ heats the solid adiabatically, ΔT = χ Δw/(ρc) (Taylor & Quinney 1934).
 //!
-//! Δγ is found in plain numbers; one more step of Newton in the numbers of the caller gives its first derivative, so that a
-//! tangent is the consistent one.
+//! Δγ is found in real arithmetic. One more Newton step in the scalar type of the caller gives its first derivative, so
+//! that the tangent is consistent.
 use super::elastic::{Moduli, excess_volume, isochoric, volumetric_energy};
 use super::flow::{Plasticity, Rate};
 use super::tensor::{self, Tensor};
@@ -24,45 +25,46 @@ use crate::math::dual::Dual;
 use crate::math::jet::Scalar;
 use std::ops::Range;
 
-/// √⅔, which turns the norm of a deviator into the equivalent stress of tension and back.
+/// √⅔, the factor between the norm of a deviator and the equivalent uniaxial stress.
 const ROOT: f64 = 0.816_496_580_927_726;
-/// Steps of Newton after which a root counts as found: rounding keeps the last digit moving.
+/// Maximum number of Newton steps; afterwards the root is accepted, because rounding may keep the last digit from
+/// settling.
 const MOST_STEPS: usize = 100;
-/// Relative size of a step that no longer matters.
+/// Relative size of a step at which the iteration ends.
 const ROUNDING: f64 = 4.0 * f64::EPSILON;
-/// How far a search that left its bracket goes towards zero.
+/// Fraction of the upper limit of the bracket at which a search continues that left a bracket with the lower limit zero.
 const RETREAT: f64 = 0.05;
 
-/// Where Cᵖ⁻¹ is kept.
+/// Range of Cᵖ⁻¹ in the history.
 const METRIC: Range<usize> = 0..6;
-/// Where the back stress is kept, turned back by the rotation of F.
+/// Range of the back stress in the history, rotated back by the rotation of F.
 const BACK: Range<usize> = 6..12;
-/// Where the equivalent plastic strain is kept.
+/// Index of the equivalent plastic strain in the history.
 pub(super) const STRAIN: usize = 12;
-/// Where the temperature is kept.
+/// Index of the temperature in the history.
 pub(super) const TEMPERATURE: usize = 13;
-/// Where the plastic work per reference volume is kept.
+/// Index of the plastic work per undeformed volume in the history.
 pub(super) const WORK: usize = 14;
-/// Where the plastic work per unit of γ, less that on the back stress, at the end of the last step is kept; 0 after an
+/// Index of the plastic work per unit of γ, minus that on the back stress, at the end of the last step; 0 after an
 /// elastic step.
 const POWER: usize = 15;
-/// Numbers kept.
+/// Number of history variables.
 pub(super) const LENGTH: usize = 16;
 
-/// What the law is at one place: constants of a step.
+/// Material constants and data of a step.
 #[derive(Clone, Copy)]
 struct Point<'a> {
     moduli: &'a Moduli,
     law: &'a Plasticity,
-    /// Rise of temperature per plastic work.
+    /// Temperature rise per plastic work.
     heating: f64,
     old: &'a [f64],
     dt: f64,
 }
 
-/// State before plastic flow.
+/// Trial state, before plastic flow.
 struct Trial<S> {
-    /// dev b̄.
+    /// Deviator dev b̄ of the trial state.
     shape: Tensor<S>,
     /// ⅓ tr b̄.
     mean: S,
@@ -70,20 +72,20 @@ struct Trial<S> {
     back: Tensor<S>,
     /// Direction n of ξ.
     direction: Tensor<S>,
-    /// |ξ|.
+    /// Norm |ξ| of the relative stress.
     norm: S,
-    /// tr n³.
+    /// Third invariant tr n³ of the direction.
     cubic: S,
 }
 
-/// The virgin state.
+/// Writes the history of the undeformed state without plastic flow.
 pub(super) fn begin(temperature: f64, history: &mut [f64]) {
     history[..LENGTH].fill(0.0);
     history[..3].fill(1.0);
     history[TEMPERATURE] = temperature;
 }
 
-/// Stress after a step, with `heating` the rise of temperature per plastic work.
+/// Response to a step; `heating` is the temperature rise per plastic work.
 pub(super) fn respond<S: Scalar>(
     moduli: &Moduli,
     law: &Plasticity,
@@ -137,7 +139,7 @@ pub(super) fn respond<S: Scalar>(
 }
 
 impl Point<'_> {
-    /// The state that F alone would lead to.
+    /// Trial state for the deformation gradient, without plastic flow.
     #[inline(always)]
     fn trial<S: Scalar>(&self, f: &Tensor<S>, isochoric: S, rotation: Option<&Tensor<S>>) -> Trial<S> {
         let pushed = tensor::product(f, &tensor::constant(&self.old[METRIC]));
@@ -149,14 +151,14 @@ impl Point<'_> {
         });
         let relative = tensor::difference(&tensor::times(&shape, S::constant(self.moduli.shear)), &back);
         let square = tensor::contraction(&relative, &relative);
-        // the norm of nothing has no derivative, and is not needed
+        // the norm of a zero tensor has no derivative, and is not needed
         let norm = if square.value() > 0.0 { square.sqrt() } else { S::constant(0.0) };
         let over = if square.value() > 0.0 { norm.inverse() } else { S::constant(0.0) };
         let direction = tensor::times(&relative, over);
         Trial { shape, mean, back, direction, norm, cubic: tensor::determinant(&direction) * 3.0 }
     }
 
-    /// Plastic flow Δγ of the step, zero where the trial state does not yield.
+    /// Plastic flow Δγ of the step; zero if the trial state does not yield.
     #[inline(always)]
     fn flow<S: Scalar>(&self, trial: &Trial<S>) -> S {
         let plain = trial.convert(S::value);
@@ -170,7 +172,7 @@ impl Point<'_> {
         S::constant(flow) - left * (1.0 / slope)
     }
 
-    /// Root Δγ of the yield condition and its slope there: Newton's steps within a shrinking bracket.
+    /// Root Δγ of the yield condition and the slope there, by Newton's method within a shrinking bracket.
     fn root(&self, trial: &Trial<f64>, excess: f64) -> (f64, f64) {
         let stiffness = 2.0 * self.moduli.shear * trial.mean + self.law.kinematic * (2.0 / 3.0);
         let (mut low, mut high) = (0.0, trial.norm / (2.0 * self.moduli.shear * trial.mean));
@@ -198,7 +200,7 @@ impl Point<'_> {
         (flow, slope)
     }
 
-    /// |ξ| − √⅔ σ_y after the plastic flow `flow`: positive while the state yields.
+    /// |ξ| − √⅔ σ_y after the plastic flow `flow`: positive as long as the state yields.
     #[inline(always)]
     fn excess<S: Scalar>(&self, trial: &Trial<S>, flow: S) -> S {
         let strain = trial.plastic_strain(flow);
@@ -208,15 +210,15 @@ impl Point<'_> {
         trial.norm - relieved - self.flow_stress(strain * ROOT, heat + self.old[TEMPERATURE]) * ROOT
     }
 
-    /// Flow stress after a rise of plastic strain in this step.
+    /// Flow stress after an increase of the plastic strain in this step.
     #[inline(always)]
     fn flow_stress<S: Scalar>(&self, rise: S, temperature: S) -> S {
-        // without a duration there is no rate: the slow response
+        // a step without duration has no strain rate: the quasi-static response is used
         let rate = if self.dt > 0.0 { rise * (1.0 / self.dt) } else { S::constant(0.0) };
         self.law.flow_stress(rise + self.old[STRAIN], rate, temperature)
     }
 
-    /// Plastic work of the step, and its rate π with γ at the end less the part β:n on the back stress.
+    /// Plastic work of the step, and its rate π with respect to γ at the end, minus the part β:n on the back stress.
     ///
     /// With d = dev b̄, x = ⅓ tr b̄ and det b̄ = 1, d(tr b̄)/dγ along dd/dγ = −2x n gives π = 3μx (x n:d − n:d²)/I₂,
     /// I₂ = 3x² − ½ d:d; for small elastic strain that is s:n.
@@ -231,9 +233,9 @@ impl Point<'_> {
         let strain = trial.plastic_strain(flow);
         let back_end = back + strain * (self.law.kinematic * 2.0 / 3.0);
         let power = x * along / second * (3.0 * self.moduli.shear) - back_end;
-        // flow began somewhere within the step, at about the stress of its end
+        // plastic flow started within the step, at about the stress of its end
         let start = if self.old[POWER] == 0.0 { power } else { S::constant(self.old[POWER]) };
-        // the return went by the x of the trial state
+        // the return used the x of the trial state
         ((start + power + back + back_end) * strain * (trial.mean / x) * 0.5, power)
     }
 
@@ -254,7 +256,7 @@ impl<S: Scalar> Trial<S> {
         flow / (flow * self.cubic + 1.0)
     }
 
-    /// The same state in other numbers.
+    /// The trial state in another scalar type.
     #[inline(always)]
     fn convert<T: Scalar>(&self, f: impl Fn(S) -> T + Copy) -> Trial<T> {
         Trial {
@@ -268,12 +270,12 @@ impl<S: Scalar> Trial<S> {
     }
 }
 
-/// The x for which det(d + x I) = 1, d a deviator: the greatest root of x³ − ½ (d:d) x + det d − 1.
+/// The x for which det(d + x I) = 1 for a deviator d: the largest root of x³ − ½ (d:d) x + det d − 1.
 #[inline(always)]
 fn unimodular_mean<S: Scalar>(d: &Tensor<S>) -> S {
     let (linear, constant) = (tensor::contraction(d, d) * 0.5, tensor::determinant(d) - 1.0);
     let (a, b) = (linear.value(), constant.value());
-    // right of the turning point √(a/3) the cubic is convex, and all but the first step go down to the root
+    // to the right of the turning point √(a/3) the cubic is convex, and all steps but the first decrease to the root
     let mut x = 1.0 + (a / 3.0).sqrt();
     for _ in 0..MOST_STEPS {
         let change = ((x * x - a) * x + b) / (3.0 * x * x - a);
@@ -286,7 +288,8 @@ fn unimodular_mean<S: Scalar>(d: &Tensor<S>) -> S {
     x - ((x * x - linear) * x + constant) * (1.0 / (3.0 * x.value() * x.value() - a))
 }
 
-/// The same less one: −⅓ (x I₂ + I₃ + e² (3 + e)) with the invariants of d, from e = x − 1, so that small strains keep their digits.
+/// The value of x − 1 = −⅓ (x I₂ + I₃ + e² (3 + e)) with the invariants of d, from e = x − 1, so that small strains
+/// remain accurate.
 #[inline(always)]
 fn excess_of_mean<S: Scalar>(d: &Tensor<S>, mean: S) -> S {
     let e = mean - 1.0;
@@ -309,7 +312,7 @@ mod tests {
         (material, history)
     }
 
-    /// Kirchhoff's stress along a bar stretched to `stretch` with free sides; moves the history on.
+    /// Kirchhoff stress along a bar with free sides that is stretched to `stretch`; updates the history.
     fn pull(material: &Material, stretch: f64, dt: f64, history: &mut Vec<f64>) -> f64 {
         let at = |side: Dual| {
             let mut f = tensor::identity();
@@ -341,7 +344,7 @@ mod tests {
         }
         let first = history[STRAIN];
         assert!((first - 1.4f64.ln()).abs() < 0.02);
-        // Bauschinger: the way back yields about the centre that has moved by the kinematic part
+        // Bauschinger effect: reverse loading yields about the centre that has moved by the kinematic part
         for k in 1..=20 {
             let stress = pull(&material, 1.4 - 0.02 * f64::from(k), 1.0, &mut history);
             let all = history[STRAIN];
@@ -392,7 +395,7 @@ mod tests {
             let p = material.respond(&f, &old, dt, &mut new).stress;
             let shape = tensor::norm(&tensor::deviator(&tensor::product_transposed(&p, &f))) / ROOT;
             let strain = new[STRAIN];
-            // the rate is as exact as the strain, which may be 1e-15 of the step
+            // the rate is as accurate as the strain, whose error may be 1e-15 of the step
             let found = law.flow_stress(strain, strain / dt, new[TEMPERATURE]);
             assert!(strain > 0.0 || shape <= found, "seed {seed}");
             assert!(
@@ -455,7 +458,7 @@ mod tests {
         }
         let exact = start * (1.0 + (viscosity * rate).powf(1.0 / exponent));
         assert!((stress / exact - 1.0).abs() < 1e-6, "{:.1e}", stress / exact - 1.0);
-        // an instant lets nothing flow
+        // a step without duration causes no viscoplastic flow
         let before = history[STRAIN];
         pull(&material, 1.1, 0.0, &mut history);
         assert_eq!(history[STRAIN], before);
@@ -466,7 +469,7 @@ mod tests {
         let softening = Some(Softening { reference: 300.0, melting: 800.0, exponent: 1.0 });
         let start = 1e-7;
         let (material, mut history) = solid(Plasticity { softening, ..Plasticity::linear(start, 0.0) });
-        // all plastic work heats, so that a strain of 1 without softening would give 500 K
+        // all plastic work becomes heat, so that a strain of 1 without softening would give a rise of 500 K
         let thermal = Thermal { heat_capacity: start / 500.0, heated_fraction: 1.0, start: 300.0 };
         let material = Material { thermal, ..material };
         material.begin(&mut history);

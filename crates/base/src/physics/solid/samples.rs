@@ -1,7 +1,7 @@
-//! What the tests of this module share: random tensors and comparisons.
+//! Random tensors and comparisons for the tests of this module.
 use super::tensor::{self, Tensor};
 
-/// Numbers within ±`size`, the same for the same `seed`.
+/// Components within ±`size`, which depend on `seed` only.
 pub(super) fn random_tensor(seed: u64, size: f64) -> Tensor {
     // splitmix64 (Steele, Lea, Flood 2014)
     let mut state = seed.wrapping_mul(0x9e37_79b9_7f4a_7c15).wrapping_add(12345);
@@ -14,9 +14,9 @@ pub(super) fn random_tensor(seed: u64, size: f64) -> Tensor {
     })
 }
 
-/// A rotation.
+/// A random rotation.
 pub(super) fn random_rotation(seed: u64) -> Tensor {
-    // three turns, each by an angle of any size
+    // three rotations about axes, by arbitrary angles
     let angles = random_tensor(seed, 3.0)[0];
     let turn = |k: usize| {
         let (s, c) = angles[k].sin_cos();
@@ -28,7 +28,7 @@ pub(super) fn random_rotation(seed: u64) -> Tensor {
     tensor::product(&turn(0), &tensor::product(&turn(1), &turn(2)))
 }
 
-/// Greatest difference of components.
+/// Maximum difference of components.
 pub(super) fn distance(a: &Tensor, b: &Tensor) -> f64 {
     (0..9).fold(0.0, |m, k| {
         let d = (a[k / 3][k % 3] - b[k / 3][k % 3]).abs();

@@ -100,7 +100,7 @@ pub fn cofactor<S: Scalar>(a: &Tensor<S>) -> Tensor<S> {
     })
 }
 
-/// Determinant.
+/// Determinant of a tensor.
 #[inline(always)]
 pub fn determinant<S: Scalar>(a: &Tensor<S>) -> S {
     a[0][0] * (a[1][1] * a[2][2] - a[1][2] * a[2][1])
@@ -116,7 +116,7 @@ pub fn inverse<S: Scalar>(a: &Tensor<S>) -> Tensor<S> {
     of(|i, j| cofactor[j][i] * over)
 }
 
-/// Trace.
+/// Trace of a tensor.
 #[inline(always)]
 pub fn trace<S: Scalar>(a: &Tensor<S>) -> S {
     a[0][0] + a[1][1] + a[2][2]

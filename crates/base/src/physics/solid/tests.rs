@@ -1,4 +1,4 @@
-//! Truths that hold for several laws: tangents, rotations, energy, plane stress.
+//! Properties that hold for several laws: tangents, rotations, energy, plane stress.
 use super::samples::{close, distance, random_rotation, random_tensor};
 use super::*;
 use crate::math::jet::Jet;
@@ -7,7 +7,7 @@ const MODULI: Moduli = Moduli { shear: 1.0, bulk: 2.2 };
 const SOFTENING: Softening = Softening { reference: 290.0, melting: 800.0, exponent: 0.9 };
 const YIELD: f64 = 0.01;
 
-/// A solid of each law, and of each kind of plasticity.
+/// A material for each law, and for each kind of plasticity.
 fn all() -> Vec<Material> {
     let voce = Hardening::Voce { start: YIELD, linear: 0.02, saturation: 0.01, exponent: 8.0 };
     let power = Hardening::Power { start: YIELD, modulus: 0.02, exponent: 0.3 };
@@ -28,7 +28,7 @@ fn all() -> Vec<Material> {
         plastic(voce, 0.0, overstress, None),
         plastic(power, 0.05, overstress, Some(SOFTENING)),
     ];
-    // plastic work of the order of the yield stress warms by tens of degrees
+    // plastic work of the order of the yield stress heats by tens of degrees
     let thermal = Thermal { heat_capacity: 4e-4, heated_fraction: 0.9, start: 300.0 };
     laws.map(|law| Material { thermal, ..Material::new(1.0, MODULI, law) }).to_vec()
 }
@@ -37,7 +37,7 @@ fn is_plastic(material: &Material) -> bool {
     matches!(material.law, Law::Plastic(_))
 }
 
-/// F along a smooth path of finite strain and rotation, closed after t = 1 where `turn` is a whole number of turns.
+/// F along a smooth path of finite strain and rotation, which is closed after t = 1 if `turn` is an integer.
 fn path(t: f64, size: f64) -> Tensor {
     let (a, b) = (random_tensor(11, size), random_tensor(12, size));
     let phase = std::f64::consts::TAU * t;
@@ -45,7 +45,7 @@ fn path(t: f64, size: f64) -> Tensor {
     tensor::plus_identity(&strain, 1.0)
 }
 
-/// History after `n` steps of the path up to `end`, virgin before.
+/// History after `n` steps along the path from the initial state up to `end`.
 fn history_along(material: &Material, n: usize, end: f64, size: f64) -> Vec<f64> {
     let mut old = vec![0.0; material.history_len()];
     material.begin(&mut old);
@@ -150,13 +150,14 @@ fn twenty_turns_leave_no_stress() {
             greatest = greatest.max(tensor::norm(&material.respond(&f, &old, 0.01, &mut new).stress));
             old = new;
         }
-        // rounding of 8000 relative gradients, which the hypoelastic law adds up: 3e-12; others reach 1e-15
+        // rounding of 8000 relative gradients, which accumulates in the hypoelastic law: 3e-12; other laws reach 1e-15
         let bar = if matches!(material.law, Law::Hypoelastic) { 1e-11 } else { 1e-14 };
         assert!(greatest < bar, "{greatest:.1e}");
     }
 }
 
-/// Work of the stress along the path up to `end` by the trapezoidal rule, less the change of energy stored and what was lost.
+/// Work of the stress along the path up to `end` by the trapezoidal rule, minus the change of stored energy and the
+/// dissipated energy.
 fn left_over(material: &Material, n: usize, end: f64, size: f64) -> (f64, f64, f64) {
     let mut old = vec![0.0; material.history_len()];
     material.begin(&mut old);
@@ -177,13 +178,13 @@ fn left_over(material: &Material, n: usize, end: f64, size: f64) -> (f64, f64, f
 #[test]
 fn work_along_a_path_is_what_is_stored_and_lost() {
     for (k, material) in all().iter().enumerate() {
-        // there, and around
+        // along a part of the path, and around the closed path
         for end in [0.35, 1.0] {
             let size = if is_plastic(material) { 0.05 } else { 0.15 };
             let [(coarse, ..), (fine, _, lost)] = [500, 1000].map(|n| left_over(material, n, end, size));
-            // second order in the step: 5e-7 of what is lost for relaxation, up to 2e-5 for plastic flow
+            // second order in the step: 5e-7 of the dissipated energy for relaxation, up to 2e-5 for plastic flow
             assert!(fine.abs() < 3e-5 * lost.abs() + 4e-8, "law {k}: {fine:.1e} of {lost:.1e}");
-            // hardening and overstress that begin with infinite slope make the order of a start erratic
+            // hardening and overstress with infinite initial slope make the observed order at the start irregular
             let order = (coarse / fine).abs().log2();
             let smooth = !matches!(material.law, Law::Plastic(Plasticity { softening: Some(_), .. }))
                 && !matches!(material.law, Law::Plastic(Plasticity { rate: Rate::Overstress { .. }, .. }));
@@ -227,7 +228,7 @@ fn the_sheet_of_incompressible_rubber_keeps_its_volume() {
     (f[0][0], f[1][1]) = (stretch, stretch.powf(-0.5));
     let (answer, thickness) = plane_stress(&material, &f, 1.0, &[], 0.0, &mut []);
     assert!((thickness * stretch.sqrt() - 1.0).abs() < 3e-4);
-    // Treloar: P = μ (λ − 1/λ²), within the compressibility that is left
+    // Treloar: P = μ (λ − 1/λ²), up to the remaining compressibility
     let exact = material.moduli.shear * (stretch - stretch.powi(-2));
     assert!((answer.stress[0][0] / exact - 1.0).abs() < 3e-4 && answer.stress[2][2].abs() < 1e-12);
 }

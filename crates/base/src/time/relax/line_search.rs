@@ -1,55 +1,61 @@
-//! How much of a step is taken, and the Courant number of the next one.
+//! Line search: the accepted fraction of a step, and the Courant number of the next one.
 use super::super::control::Method;
 use super::newton::{put, shift, sweep_fields};
 use super::{Relax, START_CFL_MAX};
 use crate::math::parallel::{sweep, sweep_rows};
 use crate::system::{Implicit, Reach};
 
-/// Error of what the linear system foretold of the residual, over the residual before the step, below which the Courant number
-/// grows, and how much at least: a residual that rises as the pseudo time has it, near a flow that is steady but unstable, is
-/// no reason for smaller steps, with which it would only be followed in time.
+/// Maximum deviation of the residual from the prediction of the linear system, relative to the residual before the
+/// step, at which the Courant number still grows, and the minimum growth in this case. Near a flow that is steady but
+/// unstable, the residual rises as predicted in pseudo time. Smaller steps would then only follow the instability in
+/// time.
 const TRUSTED: f64 = 0.5;
 const TRUSTED_GROWTH: f64 = 1.5;
-/// Largest ratio of residuals of successive steps while shocks travel.
+/// Maximum ratio of the residuals of successive steps while shocks move.
 const START_JUMP: f64 = 4.0;
-/// Largest ratio of residuals of successive Newton steps within a step in time.
+/// Maximum ratio of the residuals of successive Newton steps within a time step.
 const NEWTON_JUMP: f64 = 1.1;
-/// The same on the way to a steady flow. A shock that enters the next row of particles makes the residual several times as large before it
-/// falls: steps that may not pass over that are cut short at every row.
+/// Maximum ratio of the residuals of successive Newton steps towards a steady flow. When a shock moves to the next row
+/// of particles, the residual grows several times before it falls; with a smaller limit, steps would be cut at every
+/// row.
 const SHOCK_JUMP: f64 = 10.0;
-/// The same around strong shocks: a bow shock at Mach 10 does not come back from larger ones.
+/// Maximum ratio of the residuals of successive Newton steps around strong shocks: a bow shock at Mach 10 does not
+/// recover from larger ones.
 const STRONG_SHOCK_JUMP: f64 = 2.0;
-/// Least growth of the Courant number after a whole step towards a steady flow while the residual is above its smallest, and around strong
-/// shocks: where it waits for the residual to fall, shocks travel as slowly as in time.
+/// Minimum growth of the Courant number after a full step towards a steady flow while the residual is above its
+/// minimum, and around strong shocks. If the Courant number only grew when the residual falls, shocks would move as
+/// slowly as in physical time.
 const LEAST_GROWTH: f64 = 3.0;
 const STRONG_SHOCK_GROWTH: f64 = 1.0;
-/// Largest over smallest pressure above which shocks may be strong: 3 to 6 around transonic sections, above 100 behind a bow shock at Mach 3.
+/// Ratio of maximum to minimum pressure above which shocks may be strong: it is 3 to 6 around transonic aerofoils and
+/// above 100 behind a bow shock at Mach 3.
 const STRONG_SHOCKS: f64 = 10.0;
-/// Growth of the Courant number after a whole Newton step within a step in time, at least.
+/// Minimum growth of the Courant number after a full Newton step within a time step.
 const LEAST_GROWTH_IN_TIME: f64 = 0.5;
-/// Step lengths that are tried before the Courant number is lowered: 1, 1/2, 1/4.
+/// Number of step lengths that are tried before the Courant number is reduced: 1, 1/2, 1/4.
 const SHORTER_STEPS: i32 = 3;
-/// Largest relative change of density and pressure in one step that is shortened as a whole.
+/// Maximum relative change of density and pressure in a step that is scaled as a whole.
 const LARGEST_CHANGE: f64 = 0.3;
-/// Largest relative change of a particle in a step that is shortened row by row, and the greatest change before, beyond which the step is
-/// shortened as a whole: what a strong shock leaves of such steps fits no flow.
+/// Maximum relative change of a particle in a step that is scaled row by row, and the maximum change of the unscaled
+/// step for which this is done. Larger steps are scaled as a whole, because a strong shock does not remain a valid flow
+/// if its rows are scaled separately.
 const LARGEST_ROW_CHANGE: f64 = 0.5;
 const MILD_CHANGE: f64 = 1.0;
-/// Fall of the residual in an iteration of a step in time with which the preconditioner goes on to serve.
+/// Reduction factor of the residual in an iteration of a time step above which the preconditioner remains in use.
 const GOOD_FALL: f64 = 2.0;
 
-/// How daring a line search is.
+/// Limits of a line search.
 #[derive(Clone, Copy)]
 struct Search {
-    /// Largest ratio of the residual after a step to that before.
+    /// Maximum ratio of the residual after a step to that before it.
     jump: f64,
-    /// Least growth of the Courant number after a whole Newton step.
+    /// Minimum growth of the Courant number after a full Newton step.
     growth: f64,
 }
 
 impl<S: Implicit> Relax<'_, S> {
-    /// Part of the step that changes no density and no pressure by too much. On the way to a steady flow mild steps are shortened row by row
-    /// instead.
+    /// Fraction of the step at which the changes of density and pressure stay within their limits. On the way to a
+    /// steady flow, moderate steps are scaled row by row instead.
     pub(super) fn fraction(&mut self) -> f64 {
         let change = self.system.largest_change(&self.u, &self.step);
         if self.time.is_some() || !(change <= MILD_CHANGE) {
@@ -61,7 +67,8 @@ impl<S: Implicit> Relax<'_, S> {
         1.0
     }
 
-    /// Takes the step times `fraction`, or a shorter one when Newton's method overshoots.
+    /// Applies the step times `fraction`, or a shorter one if Newton's method overshoots; false if no step was
+    /// accepted.
     pub(super) fn search(&mut self, fraction: f64) -> bool {
         if !self.phase.newton {
             return self.accept(fraction, Search { jump: START_JUMP, growth: 1.0 });
@@ -76,7 +83,8 @@ impl<S: Implicit> Relax<'_, S> {
         (0..SHORTER_STEPS).any(|k| self.accept(fraction * 0.5f64.powi(k), search))
     }
 
-    /// Takes the step times `fraction` if the new residual is at most `search.jump` times the old one; sets the next Courant number.
+    /// Accepts the step times `fraction` if the new residual is at most `search.jump` times the old one, and sets the
+    /// next Courant number.
     fn accept(&mut self, fraction: f64, search: Search) -> bool {
         let (u, step) = (&self.u, &self.step);
         sweep(&mut self.trial, |k| u[k] + fraction * step[k]);
@@ -115,7 +123,7 @@ impl<S: Implicit> Relax<'_, S> {
         true
     }
 
-    /// The frame of the state in `trial`, where frames depend on the state.
+    /// Frame of the state in `trial`, if frames depend on the state.
     fn frame_of_trial(&mut self) -> Option<S::Frame> {
         if !self.moves() {
             return None;
@@ -125,7 +133,7 @@ impl<S: Implicit> Relax<'_, S> {
         Some(frame)
     }
 
-    /// Size of what the residual after a whole step differs by from what the linear system left of it, δu/Δτ.
+    /// Norm of the difference between the residual after a full step and the prediction of the linear system, δu/Δτ.
     fn model_error(&mut self) -> f64 {
         let shift = shift((&self.rate, self.cfl), None, Reach::Far);
         let (residual, step) = (&self.residual, &self.step);
@@ -137,8 +145,8 @@ impl<S: Implicit> Relax<'_, S> {
         self.norm_of(&self.trial)
     }
 
-    /// The Courant number after an accepted step that divided the residual by `ratio`; it grows at least by `least` after a whole step of
-    /// Newton's method.
+    /// Courant number after an accepted step whose residual decreased by the factor `ratio`; after a full Newton step
+    /// it grows at least by the factor `least`.
     fn next_cfl(&self, fraction: f64, ratio: f64, least: f64) -> f64 {
         let growth = self.control.growth;
         let factor = match (self.phase.newton, fraction == 1.0) {

@@ -1,8 +1,8 @@
 //! One step of a relaxation: the linear system (1/Δτ + c − ∂R/∂U) δU = R(U) − ∂U/∂t.
 //!
-//! Products with the matrix are differences of residuals (Knoll and Keyes 2004); where bodies move with the state, the frame
-//! moves with the difference, so that the feedback of motion on the gas is part of the product. GMRES solves to as much as
-//! Newton's method can use.
+//! Products with the matrix are differences of residuals (Knoll and Keyes 2004). If bodies move with the state, the
+//! frame is displaced too, so that the product includes the effect of body motion on the gas. GMRES solves the system
+//! only as accurately as Newton's method needs.
 use super::super::preconditioning::Preconditioning;
 use super::{Relax, TimeTerm};
 use crate::math::krylov::{Gmres, Goal, Numbers, System as Linear};
@@ -10,23 +10,25 @@ use crate::math::parallel::{sweep, sweep_rows};
 use crate::math::reduce::sum;
 use crate::system::{Implicit, Instant, Reach, RightHandSide, Shift, System, placed};
 
-/// Part of the fall that a step in time still needs which its next linear solve is asked for.
+/// Fraction of the remaining reduction of a time step (in orders of magnitude) that the next linear solve has to
+/// achieve.
 const SHARE: f64 = 0.6;
-/// Smallest and largest reduction asked of those solves: beyond the first, what Newton's method leaves is larger.
+/// Minimum and maximum reduction of those solves: below the minimum, the nonlinear error of Newton's method dominates.
 const REDUCTION: [f64; 2] = [0.04, 0.5];
-/// Reduction asked of the linear solves of a steady flow while the residual does not fall: shocks are on their way, and no step is exact.
+/// Reduction of the linear solves of a steady flow while the residual does not fall: shocks are moving, and an exact
+/// solution gains nothing.
 const WANDERING: f64 = 0.3;
 
 impl<S: Implicit> Relax<'_, S> {
-    /// How far the linear system at hand reaches: a step in time couples what is near.
+    /// Range of coupling of the current linear system; a short time step couples neighbours only.
     fn system_reach(&self) -> Reach {
         if self.time.is_some() && self.phase.newton { self.reach() } else { Reach::Far }
     }
 
-    /// Makes the preconditioner, unless that of this step in time still serves.
+    /// Builds the preconditioner, unless the existing one of this time step remains in use.
     fn prepare(&mut self, preconditioning: &mut Preconditioning<S::Preconditioner>) {
         let kept = preconditioning.is_kept() && self.phase.newton;
-        // a step in time begins with the rates at its guess
+        // at the initial guess of a time step, the rates are already computed
         if !kept && (self.time.is_none() || self.iteration > 1) {
             self.system.rates(&self.frame, &self.u, &mut self.work, &mut self.rate);
         }
@@ -37,7 +39,7 @@ impl<S: Implicit> Relax<'_, S> {
         }
     }
 
-    /// The step of Newton's method, or of the preconditioner alone.
+    /// Computes a step of Newton's method, or of the preconditioner alone.
     pub(super) fn implicit_step(&mut self) {
         let reach = self.system_reach();
         let Some(mut preconditioning) = self.preconditioning.take() else { return };
@@ -58,7 +60,7 @@ impl<S: Implicit> Relax<'_, S> {
         self.preconditioning = Some(preconditioning);
     }
 
-    /// Reduction asked of a linear solve, and the greatest number of its iterations.
+    /// Reduction and maximum number of iterations of the next linear solve.
     fn asked(&self, reach: Reach) -> Goal {
         if self.time.is_none() {
             let wanders = self.norm > self.phase.best;
@@ -69,7 +71,7 @@ impl<S: Implicit> Relax<'_, S> {
         Goal { tolerance, most: Preconditioning::<S::Preconditioner>::most(reach) }
     }
 
-    /// The step of Newton's method; the iterations that it took.
+    /// Computes a step of Newton's method and returns its number of linear iterations.
     fn newton_step(
         &mut self,
         gmres: &mut Gmres,
@@ -82,7 +84,7 @@ impl<S: Implicit> Relax<'_, S> {
         let mut beside = moves.then(|| self.beside.take().unwrap_or_else(|| self.frame.clone()));
         let (system, frame, work, u, residual) = (self.system, &self.frame, &mut self.work, &self.u, &self.residual);
         let (trial, scale, time) = (&mut self.trial, &*self.scale, self.time.as_ref());
-        // rows are scaled by the local time, so that small particles do not rule the norm
+        // rows are scaled by the local time, so that small particles do not dominate the norm
         sweep_fields(system, &mut self.trial_residual, |i, at, b| {
             b.iter_mut().zip(&residual[at..]).for_each(|(b, r)| *b = r * scale[i]);
         });
@@ -99,7 +101,7 @@ impl<S: Implicit> Relax<'_, S> {
                 put(system, time, trial, beside);
             }
             system.rhs(beside.as_ref().unwrap_or(frame), trial, work, out);
-            // the residual holds the time term at u, which is the same in both; its change is in the shift
+            // the residual includes the time term at u, which is equal on both sides; its change is part of the shift
             let base = |k: usize| residual[k] + time.map_or(0.0, |t| t.rate() * u[k] + t.rest[k]);
             sweep_fields(system, out, |i, at, out| {
                 for (k, o) in (at..).zip(out) {
@@ -119,12 +121,12 @@ impl<S: Implicit> Relax<'_, S> {
     }
 }
 
-/// What is added to the diagonal of rows with these rates.
+/// Diagonal shift for rows with the given rates of change and Courant number.
 pub(super) fn shift<'a>((rates, cfl): (&'a [f64], f64), time: Option<&TimeTerm>, reach: Reach) -> Shift<'a> {
     Shift { rates, cfl, coefficient: time.map_or(0.0, TimeTerm::rate), reach }
 }
 
-/// Brings a frame to where the state `u` puts it.
+/// Moves the frame to the positions that the state `u` determines.
 pub(super) fn put<S: System>(system: &S, time: Option<&TimeTerm>, u: &[f64], frame: &mut S::Frame) {
     let coordinates = &system.placing().values(u);
     match time {
@@ -133,7 +135,8 @@ pub(super) fn put<S: System>(system: &S, time: Option<&TimeTerm>, u: &[f64], fra
     }
 }
 
-/// Calls `f` with every row of all fields: its number, the number of its first unknown, and its slots of `out`.
+/// Calls `f` for every row of all fields, with the index of the row, the index of its first unknown, and its entries in
+/// `out`.
 pub(super) fn sweep_fields<S: System>(system: &S, out: &mut [f64], f: impl Fn(usize, usize, &mut [f64]) + Sync) {
     for at in placed(system.fields()) {
         let (row, unknown, n) = (at.rows.start, at.unknowns.start, at.field.block);
