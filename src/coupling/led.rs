@@ -103,8 +103,8 @@ impl<const D: usize> System for Led<'_, D> {
         self.coupled.largest_change(u, du)
     }
 
-    fn pressure_ratio(&self, u: &[f64]) -> f64 {
-        self.coupled.pressure_ratio(u)
+    fn contrast(&self, u: &[f64]) -> f64 {
+        self.coupled.contrast(u)
     }
 
     fn shorten(&self, u: &[f64], du: &mut [f64], largest: f64) {

@@ -300,8 +300,8 @@ impl<const D: usize> System for Coupled<D> {
         self.fluid.largest_change(&u[gas.clone()], &du[gas]).max(self.largest_move(du))
     }
 
-    fn pressure_ratio(&self, u: &[f64]) -> f64 {
-        self.fluid.pressure_ratio(&u[self.unknowns_of(Name::Gas)])
+    fn contrast(&self, u: &[f64]) -> f64 {
+        self.fluid.contrast(&u[self.unknowns_of(Name::Gas)])
     }
 
     fn shorten(&self, u: &[f64], du: &mut [f64], largest: f64) {

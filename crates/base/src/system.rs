@@ -225,9 +225,9 @@ pub trait System: Sync {
             sweep_slots(du, |_, du| *du *= largest / change);
         }
     }
-    /// Ratio of the maximum to the minimum pressure of a gas in the state `_u`, which indicates how strong shocks can
-    /// be; infinite if unknown.
-    fn pressure_ratio(&self, _u: &[f64]) -> f64 {
+    /// Ratio of the greatest to the smallest value of the quantity that jumps at discontinuities (the pressure of a gas)
+    /// in the state `_u`, which indicates how strong they can be; infinite if unknown.
+    fn contrast(&self, _u: &[f64]) -> f64 {
         f64::INFINITY
     }
     /// Returns an error with the row and its position if the state `u` is not physical.

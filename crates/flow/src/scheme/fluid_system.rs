@@ -90,7 +90,7 @@ impl<const D: usize> System for Fluid<D> {
         maximum(self.discretisation.cloud.n_fluid, change)
     }
 
-    fn pressure_ratio(&self, u: &[f64]) -> f64 {
+    fn contrast(&self, u: &[f64]) -> f64 {
         let (n, pressure) =
             (self.discretisation.cloud.n_fluid, |i: usize| self.gas.primitive(&Conserved::<D>::of_row(u, i)).pressure);
         maximum(n, pressure) / minimum(n, pressure)

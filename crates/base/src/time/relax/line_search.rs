@@ -75,7 +75,7 @@ impl<S: Implicit> Relax<'_, S> {
         }
         let search = if self.time.is_some() {
             Search { jump: NEWTON_JUMP, growth: LEAST_GROWTH_IN_TIME }
-        } else if self.system.pressure_ratio(&self.u) > STRONG_SHOCKS {
+        } else if self.system.contrast(&self.u) > STRONG_SHOCKS {
             Search { jump: STRONG_SHOCK_JUMP, growth: STRONG_SHOCK_GROWTH }
         } else {
             Search { jump: SHOCK_JUMP, growth: LEAST_GROWTH }
