@@ -66,7 +66,10 @@ pub(crate) fn relax<S: HasGas<D>, const D: usize>(
     let again = turn.next().is_some_and(|stage| stage.task == Task::Relax);
     let orders = match asked {
         Some(_) => steady.orders + SETTLING,
-        None if again && spacing::begins_near(&log.case) => steady.orders.min(EARLY_ORDERS_OF_SHOCKS),
+        // what an adapted cloud is refined by needs more
+        None if again && turn.stage().factor > 1.0 && spacing::begins_near(&log.case) => {
+            steady.orders.min(EARLY_ORDERS_OF_SHOCKS)
+        }
         None if again => steady.orders.min(EARLY_ORDERS),
         None => steady.orders,
     };
