@@ -3,12 +3,12 @@
 
     tests/nightly/bars.py target/release/alula [NAME ...] [--truths FILE] [--folder bars] [--table bars.md]
 
-The truth is the extrapolation of a family of clouds whose finest has about 1.5 million particles, 8 to a level: half the spacing changed a load
+The truth is the extrapolation of a family of clouds whose finest has 1.1 to 1.8 million particles, 8 to a level: half the spacing changed a load
 by d, and errors fall with the spacing (d is left) or with its square (a third of it): the mean, or that of the last change where it is
 smaller, since fits through more clouds follow their scatter; drag without shocks by what is left of the drag once that of spurious entropy is
 taken off, where that converges sooner. Loads of these families stand in `bars.json` beside this script (the finest cloud of the capsule keeps a
 residual of 2e-5, at which its loads are constant to eight digits); a family that is missing in `--truths` is computed and
-added to it, in a quarter of an hour of one core each. The other runs take about an hour of one core; those that are there already in `--folder` are read,
+added to it, in a quarter of an hour of one core each. The other runs take about two hours of one core; those that are there already in `--folder` are read,
 not repeated. A bar holds where it is no shorter than the error; the exit code is 1 where fewer than nine of ten do, or where the median of
 bar over error is above 5.
 """
