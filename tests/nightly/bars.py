@@ -50,17 +50,17 @@ WINGS = {
 
 # Spacing at the walls of the finest cloud of each family, and length that the end of its domain is measured in
 FINEST = {
-    "M6, subsonic": (0.00988431, 2.39),
-    "M6, transonic": (0.00988431, 2.39),
+    "M6, subsonic": (0.0097, 2.39),
+    "M6, transonic": (0.0097, 2.39),
     "tapered": (0.0261771, 8.0),
-    "elliptic": (0.0221813, 8.0),
+    "elliptic": (0.0225, 8.0),
     "rectangular": (0.0202924, 8.0),
-    "swept": (0.0252399, 6.0),
-    "delta": (0.0126563, 2.0),
+    "swept": (0.0238, 6.0),
+    "delta": (0.0098, 2.0),
     "body of revolution": (0.00783696, 6.0),
-    "wing-body": (0.0241398, 5.0),
-    "delta, supersonic": (0.0119299, 2.0),
-    "cambered": (0.0226, 7.0),
+    "wing-body": (0.0197, 5.0),
+    "delta, supersonic": (0.0096, 2.0),
+    "cambered": (0.0222, 7.0),
     "capsule": (0.009, 1.1),
 }
 LOADS = ("cl", "cd", "cm")
