@@ -1,5 +1,5 @@
 //! What a run has found when it is over: loads, ledgers, errors, the wall.
-use super::look::friction::{friction_load, separations, wall_friction};
+use super::look::friction::{chordwise, friction_load, separations, wall_friction};
 use super::look::{WallSnapshot, hinge_moments, pressure_load, tip_vortex, totals};
 use super::record::family;
 use super::record::work::Clock;
@@ -278,8 +278,7 @@ impl<const D: usize> Found<'_, D> {
     /// Distances of the interface particles from the nose, over the extent of the bodies.
     pub(crate) fn chordwise(&self) -> Vec<f64> {
         let bounds = self.surface.map_or(Bounds { min: Vector::ZERO, max: Vector::splat(1.0) }, Surface::bounds);
-        let x_c = |x: &Vector<D>| (x[0] - bounds.min[0]) / bounds.extent()[0];
-        self.view.fluid.walls_before().iter().map(x_c).collect()
+        chordwise(&self.view, &bounds)
     }
 
     fn separations(&self) -> Vec<Separation> {

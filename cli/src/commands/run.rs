@@ -206,7 +206,7 @@ fn grid_convergence(c: &Convergence) -> String {
     // 0.07 times 100 is not quite 7
     let asked = (1e6 * c.asked).round() / 1e4;
     let n = c.clouds.len();
-    match c.ended_by {
+    let end = match c.ended_by {
         FamilyEnd::Accuracy => format!("loads within {asked} % on {n} clouds\n"),
         FamilyEnd::Particles => format!(
             "the error bars are longer than {asked} %: `accuracy.particles` allows no finer cloud than the last of {n}\n"
@@ -217,7 +217,8 @@ fn grid_convergence(c: &Convergence) -> String {
         FamilyEnd::Time => format!(
             "the error bars are longer than {asked} %: a finer cloud than the last of {n} would not end within `accuracy.time`\n"
         ),
-    }
+    };
+    c.moved_shocks().map_or_else(|| end.clone(), |why| format!("{end}{why}\n"))
 }
 
 /// Every number of a march or a balance with its error bar and the parts of that; nothing where none are asked for.

@@ -1,7 +1,7 @@
 //! What the gas does to the walls it sticks to: friction, heat, separation.
 use super::axes::load_on_walls;
 use crate::case::Case;
-use crate::math::Vector;
+use crate::math::{Bounds, Vector};
 use crate::observe::loads::{Load, LoadAxes};
 use crate::record::summary::Separation;
 use crate::scheme::View;
@@ -50,12 +50,43 @@ pub(crate) fn wall_friction<const D: usize>(case: &Case, view: &View<'_, D>) -> 
     Some((0..cloud.interface.len()).map(at).collect())
 }
 
+/// Distances of the interface particles from the nose, over the extent `bounds` of the bodies along x.
+pub(crate) fn chordwise<const D: usize>(view: &View<'_, D>, bounds: &Bounds<D>) -> Vec<f64> {
+    let x_c = |x: &Vector<D>| (x[0] - bounds.min[0]) / bounds.extent()[0];
+    view.fluid.walls_before().iter().map(x_c).collect()
+}
+
 /// Where friction changes from along to against the stream on each side of each body; plane cases only. `x_c` are the
 /// distances of the interface particles from the nose.
 pub(crate) fn separations<const D: usize>(
     case: &Case,
     view: &View<'_, D>,
     friction: &[WallFriction],
+    x_c: &[f64],
+) -> Vec<Separation> {
+    falls_below_zero(case, view, |w| friction[w].cf, x_c)
+}
+
+/// Where the flow along the walls falls below the speed of sound farthest downstream, on the upper and on the lower side: the feet of shocks, or
+/// the ends of regions without; plane cases of one body only.
+pub(crate) fn sonic_places<const D: usize>(case: &Case, view: &View<'_, D>, x_c: &[f64]) -> [Option<f64>; 2] {
+    let cloud = view.cloud();
+    if cloud.interface.iter().any(|w| w.body > 0) {
+        return [None; 2];
+    }
+    let beyond_sound = |w: usize| {
+        let state = view.state(cloud.n_fluid + w);
+        state.velocity.norm() / view.fluid.gas.sound_speed(&state) - 1.0
+    };
+    let places = falls_below_zero(case, view, beyond_sound, x_c);
+    [true, false].map(|upper| places.iter().filter(|p| p.upper == upper).map(|p| p.x_c).reduce(f64::max))
+}
+
+/// Where a quantity on the walls falls below zero, from the nose on each side of each body; plane cases only.
+fn falls_below_zero<const D: usize>(
+    case: &Case,
+    view: &View<'_, D>,
+    quantity: impl Fn(usize) -> f64,
     x_c: &[f64],
 ) -> Vec<Separation> {
     let walls = &view.cloud().interface;
@@ -67,7 +98,7 @@ pub(crate) fn separations<const D: usize>(
         let mut side: Vec<usize> = (0..walls.len()).filter(on_side).collect();
         side.sort_by(|a, b| x_c[*a].total_cmp(&x_c[*b]));
         for pair in side.windows(2) {
-            let [a, b] = [friction[pair[0]].cf, friction[pair[1]].cf];
+            let [a, b] = [quantity(pair[0]), quantity(pair[1])];
             if a > 0.0 && b <= 0.0 {
                 let place = x_c[pair[0]] + (x_c[pair[1]] - x_c[pair[0]]) * a / (a - b);
                 found.push(Separation { body, upper, x_c: place });

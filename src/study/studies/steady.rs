@@ -1,4 +1,5 @@
 //! Relaxation to a steady state: the end of a steady case, or the start of another.
+use super::super::look::friction::{chordwise, sonic_places};
 use super::super::look::{GasView, entropy_drag, momentum};
 use super::super::record::family;
 use super::super::record::{IterationHistory, Log};
@@ -25,8 +26,8 @@ use crate::time::{Integrator, Memory, Standing};
 /// What is left in smooth flows takes as many iterations on the next cloud, each dearer.
 const EARLY_ORDERS: f64 = 4.5;
 const EARLY_ORDERS_OF_SHOCKS: f64 = 3.0;
-/// Orders beyond those of a single cloud, on the clouds of a family: what loads change by from one to the next must not be what
-/// is left of their residual.
+/// Orders beyond those of a single cloud, on the clouds of a family whose loads have not come to rest by then: what loads change by from one to
+/// the next must not be what is left of their residual.
 const SETTLING: f64 = 1.5;
 /// Iterations without a new smallest residual after which a relaxation before the last stage has given what it can.
 const PATIENCE: u32 = 20;
@@ -43,8 +44,6 @@ const POINT_PATIENCE: usize = 60;
 
 /// Iterations that loads are watched over where the residual does not reach its goal.
 const UNSETTLED: usize = 20;
-/// Range of the loads over them, in what they are asked to, that counts as rest on the clouds of a family.
-const REST: f64 = 1e-3;
 
 /// Relaxes; `None` when told to stop.
 pub(crate) fn relax<S: HasGas<D>, const D: usize>(
@@ -64,19 +63,13 @@ pub(crate) fn relax<S: HasGas<D>, const D: usize>(
     }
     let asked = spacing::asked(&log.case);
     let again = turn.next().is_some_and(|stage| stage.task == Task::Relax);
-    let orders = match asked {
-        Some(_) => steady.orders + SETTLING,
-        // what an adapted cloud is refined by needs more
-        None if again && turn.stage().factor > 1.0 && spacing::begins_near(&log.case) => {
-            steady.orders.min(EARLY_ORDERS_OF_SHOCKS)
-        }
-        None if again => steady.orders.min(EARLY_ORDERS),
-        None => steady.orders,
-    };
+    let goals = goals(steady, asked.as_ref(), again, turn, log);
+    let mut level = 0;
     let mut relax = Relax::new(system, control(steady, D), u, &system.start(), resume);
-    relax.goal = 10f64.powf(-orders);
     let mut hurried = !turn.last();
     let enough = loop {
+        let orders = goals[level];
+        relax.goal = 10f64.powf(-orders);
         let ending = watched(system, &mut relax, (steady.iterations, hurried), turn, log, orders)?;
         match ending {
             Ending::Stopped => return Ok(None),
@@ -87,6 +80,12 @@ pub(crate) fn relax<S: HasGas<D>, const D: usize>(
         log.record.reason = (!relax.finished()).then(|| short_of_goal(&relax, steady, orders, &log.record.history));
         let loads = tell(system, &mut relax, turn, log)?;
         let enough = asked.is_some_and(|asked| family::judge(&asked, loads, log));
+        let restless = asked.is_some_and(|asked| !family::at_rest(&asked, &loads));
+        let further = restless || level == 0 && (enough || turn.last());
+        if relax.finished() && level + 1 < goals.len() && further {
+            level += 1;
+            continue;
+        }
         let resting = relax.resting();
         let rests =
             hurried && !relax.finished() && resting >= if asked.is_some() { PATIENCE } else { PATIENCE_AT_REST };
@@ -102,12 +101,36 @@ pub(crate) fn relax<S: HasGas<D>, const D: usize>(
         // the last cloud of a family is solved to the end
         hurried = false;
     };
+    if asked.is_some() {
+        family::announce(log);
+    }
     let unsteady = !log.record.converged && relax.iteration < steady.iterations;
     let (frame, mut work, end) = relax.into_end();
     let mut state = end.clone();
     let (gas, own) = (system.gas(), system.gas_unknowns());
     gas.without_circulation(system.gas_frame(&frame), system.gas_work(&mut work), &mut state[own]);
     Ok(Some(Reached { state, end: Some((frame, end)), enough, unsteady }))
+}
+
+/// Orders of magnitude that the residual has to fall by, one after the other. On a cloud of a family the first serve where its loads are at
+/// rest then and another cloud follows, the second where the loads of a last cloud are at rest, and else the third.
+fn goals<const D: usize>(
+    steady: &Steady,
+    asked: Option<&Accuracy>,
+    again: bool,
+    turn: &Turn<'_, D>,
+    log: &Log<'_>,
+) -> Vec<f64> {
+    if asked.is_some() {
+        return vec![steady.orders.min(EARLY_ORDERS), steady.orders, steady.orders + SETTLING];
+    }
+    let early = match again {
+        // what an adapted cloud is refined by needs more
+        true if turn.stage().factor > 1.0 && spacing::begins_near(&log.case) => EARLY_ORDERS_OF_SHOCKS,
+        true => EARLY_ORDERS,
+        false => steady.orders,
+    };
+    vec![steady.orders.min(early)]
 }
 
 /// Why a relaxation ended before its goal.
@@ -149,7 +172,7 @@ fn watched<S: HasGas<D>, const D: usize>(
     let hurried = hurried || (turn.stage().point.is_some() && !log.record.polar.from_rest);
     let (mut limit, mut resting, mut swinging) =
         (Limit { iterations }, Resting { patience: PATIENCE }, Swinging { patience });
-    let least = if turn.stage().factor > 1.0 && !turn.last() { EARLY_ORDERS } else { orders - SETTLING };
+    let least = if turn.stage().factor > 1.0 && !turn.last() { EARLY_ORDERS } else { orders };
     let (mut told, mut flat) = (Told, spacing::asked(&log.case).map(|asked| flat(&asked, least)));
     let mut all: Vec<&mut dyn Observer<S, Log<'_>>> = vec![&mut progress, &mut limit, &mut told];
     all.push(if hurried { &mut resting } else { &mut swinging });
@@ -164,7 +187,7 @@ fn watched<S: HasGas<D>, const D: usize>(
 
 /// When loads are at rest on a cloud of a family, whose residual has fallen by so many `orders`.
 fn flat(asked: &Accuracy, orders: f64) -> Flat {
-    Flat { residual: 10f64.powf(-orders), range: REST * asked.loads.0, iterations: UNSETTLED }
+    Flat { residual: 10f64.powf(-orders), range: family::REST * asked.loads.0, iterations: UNSETTLED }
 }
 
 /// Keeps what is known of a relaxation that is over; its loads.
@@ -202,6 +225,9 @@ fn tell<S: HasGas<D>, const D: usize>(
     let lossless = !supersonic && is_lossless(system.gas(), &log.case);
     let wake = |view: View<'_, D>| entropy_drag(&view, &log.case, &log.axes.axes(&view));
     let gas = GasView::of(system, frame, state);
+    let seen = gas.seen(system.gas_work(work));
+    let along = chordwise(&seen, &Bounds::around(system.gas().walls_before()));
+    let sonic = family.map_or([None; 2], |_| sonic_places(&log.case, &seen, &along));
     let spurious_drag = family.filter(|_| lossless).and_then(|_| wake(gas.seen(system.gas_work(work))));
     let (steady, Coefficients { cl, cd, cm }) = (log.record.converged, loads);
     let dragless = lossless && D == 2;
@@ -217,6 +243,7 @@ fn tell<S: HasGas<D>, const D: usize>(
         cm,
         momentum,
         spurious_drag,
+        sonic,
         unsettled,
     })
 }

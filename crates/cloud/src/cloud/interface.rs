@@ -40,6 +40,9 @@ const ON_PLANE: f64 = 1e-6;
 const LLOYD_ROUNDS: usize = 8;
 /// Samples over those that the area asks for from which a surface consists of slivers: triangles that are halved leave 3 to 8.
 const MANY: f64 = 16.0;
+/// Side of the cells, in sizes of samples, in which samples of slivers are united, and cosine of the angle between their normals from which.
+const UNITED: f64 = 0.75;
+const SAME_FACE: f64 = 0.95;
 /// Rounding of distances, over them.
 const ROUNDING: f64 = 1e-9;
 /// Samples whose normals differ more (cosine) belong to different particles.
@@ -269,30 +272,37 @@ impl<const D: usize> Walk<'_, D> {
 struct Samples<const D: usize> {
     x: Vec<Vector<D>>,
     normal: Vec<Vector<D>>,
-    /// Part of the element.
-    share: Vec<f64>,
+    area_vector: Vec<Vector<D>>,
+    /// Its size.
     area: Vec<f64>,
     spacing: Vec<f64>,
     element: Vec<u32>,
 }
 
-/// One of them.
-type Sample<const D: usize> = (Vector<D>, Vector<D>, f64, f64, u32);
+/// One of them: a piece of an element.
+#[derive(Clone)]
+struct Sample<const D: usize> {
+    x: Vector<D>,
+    normal: Vector<D>,
+    area: Vector<D>,
+    spacing: f64,
+    element: u32,
+}
 
 impl<const D: usize> Samples<D> {
-    /// The samples of groups in their order: position, normal, share of the element, spacing, element.
-    fn of(surface: &Surface<D>, groups: Vec<Vec<Sample<D>>>) -> Self {
+    /// The samples of groups in their order.
+    fn of(groups: Vec<Vec<Sample<D>>>) -> Self {
         let n = groups.iter().map(Vec::len).sum();
-        let numbers = || Vec::with_capacity(n);
-        let (x, normal, element) = (Vec::with_capacity(n), Vec::with_capacity(n), Vec::with_capacity(n));
-        let mut all = Self { x, normal, share: numbers(), area: numbers(), spacing: numbers(), element };
-        for (x, normal, share, spacing, element) in groups.into_iter().flatten() {
-            all.x.push(x);
-            all.normal.push(normal);
-            all.share.push(share);
-            all.area.push((surface.element_area_vector(element) * share).norm());
-            all.spacing.push(spacing);
-            all.element.push(element);
+        let (numbers, vectors) = (|| Vec::with_capacity(n), || Vec::with_capacity(n));
+        let (x, normal, area_vector, element) = (vectors(), vectors(), vectors(), Vec::with_capacity(n));
+        let mut all = Self { x, normal, area_vector, area: numbers(), spacing: numbers(), element };
+        for sample in groups.into_iter().flatten() {
+            all.x.push(sample.x);
+            all.normal.push(sample.normal);
+            all.area.push(sample.area.norm());
+            all.area_vector.push(sample.area);
+            all.spacing.push(sample.spacing);
+            all.element.push(sample.element);
         }
         all
     }
@@ -313,11 +323,11 @@ impl<const D: usize> Samples<D> {
         let cell = |x: &Vector<D>| std::array::from_fn::<u32, D, _>(|d| ((x[d] - bounds.min[d]) * scale) as u32);
         let order = order_by_key(self.len(), |k| crate::math::hilbert::hilbert_index(cell(&self.x[k]), 20));
         let mut spare = Vec::new();
-        [&mut self.x, &mut self.normal].into_iter().for_each(|all| permute(all, &order, &mut spare));
-        let mut spare = Vec::new();
-        [&mut self.share, &mut self.area, &mut self.spacing]
+        [&mut self.x, &mut self.normal, &mut self.area_vector]
             .into_iter()
             .for_each(|all| permute(all, &order, &mut spare));
+        let mut spare = Vec::new();
+        [&mut self.area, &mut self.spacing].into_iter().for_each(|all| permute(all, &order, &mut spare));
         permute(&mut self.element, &order, &mut Vec::new());
     }
 }
@@ -331,15 +341,19 @@ fn permute<T: Copy + Send + Sync>(all: &mut Vec<T>, order: &[u32], spare: &mut V
 
 /// 3-D: dense samples, greedy pick, Lloyd.
 fn scatter<const D: usize>(surface: &Surface<D>, tree: &Tree<D>, planes: &[Plane]) -> Placed<D> {
-    let groups = surface.grouped_pieces(
+    let mut groups = surface.grouped_pieces(
         |x, last: &Cell<u32>| SAMPLE_SIZE * tree.size_at(x, last),
         |x, normal, share, element, last| {
             let spacing = tree.size_at(x, last);
             let inside = planes.iter().all(|p| p.1 * (x[p.0] - p.2) < -ON_PLANE * spacing);
-            inside.then_some((*x, *normal, share, spacing, element))
+            let area = surface.element_area_vector(element) * share;
+            inside.then_some(Sample { x: *x, normal: *normal, area, spacing, element })
         },
     );
-    let mut samples = Samples::of(surface, groups);
+    if are_crowded(&groups) {
+        sweep_slots(&mut groups, |_, group| *group = united(surface, group));
+    }
+    let mut samples = Samples::of(groups);
     samples.sort_along_curve();
     let (mut chosen, mut owner) = pick(&samples);
     for _ in 0..LLOYD_ROUNDS {
@@ -350,8 +364,7 @@ fn scatter<const D: usize>(surface: &Surface<D>, tree: &Tree<D>, planes: &[Plane
     gather(surface, &samples, &chosen, &owner)
 }
 
-/// Samples that keep `PICK_SPACING` between them, first come first served, and for every sample the one that is in its way: the nearest, or
-/// where samples crowd on slivers any one of them.
+/// Samples that keep `PICK_SPACING` between them, first come first served, and for every sample the one that is in its way: the nearest.
 fn pick<const D: usize>(samples: &Samples<D>) -> (Vec<usize>, Vec<u32>) {
     // one grid for each spacing, so that the bins suit all queries
     let mut grids: BTreeMap<u64, Grid<D>> = BTreeMap::new();
@@ -360,16 +373,8 @@ fn pick<const D: usize>(samples: &Samples<D>) -> (Vec<usize>, Vec<u32>) {
     }
     let mut chosen: Vec<usize> = Vec::new();
     let mut owner = vec![0; samples.len()];
-    let crowded = are_crowded(samples);
     for (k, x) in samples.x.iter().enumerate() {
         let r = PICK_SPACING * samples.spacing[k];
-        if let Some(last) = owner[..k].last().copied().filter(|_| crowded) {
-            let o = chosen[last as usize];
-            if (samples.x[o] - *x).norm_squared() <= r * r && samples.beside(o, k) {
-                owner[k] = last;
-                continue;
-            }
-        }
         let mut best = (r * r, u32::MAX);
         grids[&samples.spacing[k].to_bits()].near(x, r, |j| {
             let o = chosen[j as usize];
@@ -389,9 +394,38 @@ fn pick<const D: usize>(samples: &Samples<D>) -> (Vec<usize>, Vec<u32>) {
 }
 
 /// True on a surface of slivers, whose pieces are as long as usual but much narrower.
-fn are_crowded<const D: usize>(samples: &Samples<D>) -> bool {
-    let asked = |(area, h): (&f64, &f64)| area / (SAMPLE_SIZE * h).powi(D as i32 - 1);
-    samples.len() as f64 > MANY * samples.area.iter().zip(&samples.spacing).map(asked).sum::<f64>()
+fn are_crowded<const D: usize>(groups: &[Vec<Sample<D>>]) -> bool {
+    let asked = |s: &Sample<D>| s.area.norm() / (SAMPLE_SIZE * s.spacing).powi(D as i32 - 1);
+    let count = |group: &Vec<Sample<D>>| (group.len() as f64, group.iter().map(asked).sum::<f64>());
+    let (all, enough) = groups.iter().map(count).fold((0.0, 0.0), |(n, m), (more, area)| (n + more, m + area));
+    all > MANY * enough
+}
+
+/// The samples of a group with those of a cell of `UNITED` sizes, one spacing, one part of a body and about one normal as one: the first of
+/// them, which gets their area.
+fn united<const D: usize>(surface: &Surface<D>, group: &[Sample<D>]) -> Vec<Sample<D>> {
+    let low: [f64; D] = std::array::from_fn(|d| group.iter().map(|s| s.x[d]).fold(f64::INFINITY, f64::min));
+    let cell = |s: &Sample<D>| -> [u32; D] {
+        std::array::from_fn(|d| ((s.x[d] - low[d]) / (UNITED * SAMPLE_SIZE * s.spacing)) as u32)
+    };
+    let part = |s: &Sample<D>| (surface.element(s.element).body, surface.element(s.element).tag);
+    let mut order: Vec<([u32; D], u32)> = group.iter().map(cell).zip(0..).collect();
+    order.sort_unstable();
+    let mut kept: Vec<Sample<D>> = Vec::new();
+    let (mut first, mut last) = (0, None);
+    for (cell, k) in order {
+        if last.replace(cell) != Some(cell) {
+            first = kept.len();
+        }
+        let s = &group[k as usize];
+        let alike =
+            |o: &&mut Sample<D>| o.spacing == s.spacing && part(o) == part(s) && o.normal.dot(&s.normal) >= SAME_FACE;
+        match kept[first..].iter_mut().find(alike) {
+            Some(o) => o.area += s.area,
+            None => kept.push(s.clone()),
+        }
+    }
+    kept
 }
 
 /// Makes `owner` the chosen sample nearest to each sample, on the same side of thin bodies: its owner so far or one of the
@@ -484,8 +518,8 @@ fn recentre<const D: usize>(samples: &Samples<D>, owner: &[u32], chosen: &mut [u
 fn gather<const D: usize>(surface: &Surface<D>, samples: &Samples<D>, chosen: &[usize], owner: &[u32]) -> Placed<D> {
     let mut placed = Placed::default();
     let mut area = vec![Vector::<D>::ZERO; chosen.len()];
-    for ((element, share), o) in samples.element.iter().zip(&samples.share).zip(owner) {
-        area[*o as usize] += surface.element_area_vector(*element) * *share;
+    for (own, o) in samples.area_vector.iter().zip(owner) {
+        area[*o as usize] += *own;
     }
     let around = around(samples, chosen);
     let mut curvature = vec![[Vector::ZERO; D]; chosen.len()];
@@ -532,27 +566,39 @@ fn shape_operator<const D: usize>(normal: &Vector<D>, around: &[(Vector<D>, Vect
 mod tests {
     use super::*;
 
-    /// Samples on a plate, `across` to a sample's size along one of its sides, and one along the other.
-    fn plate(across: usize) -> Samples<3> {
+    /// Pieces of a plate, `across` to a sample's size along one of its sides, and one along the other.
+    fn pieces(across: usize) -> Vec<Sample<3>> {
         let (size, n) = (SAMPLE_SIZE * 0.1, 80 * 80 * across);
         let at = |k: usize| Vector([(k / 80) as f64 * size / across as f64, (k % 80) as f64 * size, 0.5]);
-        let mut samples = Samples {
-            x: (0..n).map(at).collect(),
-            normal: vec![Vector([0.0, 0.0, 1.0]); n],
-            share: vec![1.0; n],
-            area: vec![size * size / across as f64; n],
-            spacing: vec![0.1; n],
-            element: vec![0; n],
-        };
+        let normal = Vector([0.0, 0.0, 1.0]);
+        let area = normal * (size * size / across as f64);
+        (0..n).map(|k| Sample { x: at(k), normal, area, spacing: 0.1, element: 0 }).collect()
+    }
+
+    fn plate(across: usize) -> Samples<3> {
+        let mut samples = Samples::of(vec![pieces(across)]);
         samples.sort_along_curve();
         samples
+    }
+
+    #[test]
+    fn pieces_of_slivers_are_united_and_keep_their_area() {
+        let surface = Surface::new(&[("ball".to_owned(), crate::geometry::icosphere(0.5, 1))]);
+        assert!(!are_crowded(&[pieces(1)]) && are_crowded(&[pieces(20)]));
+        let (before, after) = (pieces(20), united(&surface, &pieces(20)));
+        assert!(after.len() * 8 < before.len() && after.len() > 80 * 80, "{}", after.len());
+        let area = |all: &[Sample<3>]| all.iter().map(|s| s.area[2]).sum::<f64>();
+        assert!((area(&before) - area(&after)).abs() < 1e-12);
+        // two sides of a thin plate stay apart
+        let below = |s: Sample<3>| Sample { normal: s.normal * -1.0, area: s.area * -1.0, ..s };
+        let both: Vec<_> = pieces(20).into_iter().flat_map(|s| [s.clone(), below(s)]).collect();
+        assert_eq!(united(&surface, &both).len(), 2 * after.len());
     }
 
     #[test]
     fn every_sample_belongs_to_the_nearest_particle() {
         for across in [1, 20] {
             let samples = plate(across);
-            assert_eq!(are_crowded(&samples), across > 1);
             let (mut chosen, mut owner) = pick(&samples);
             for _ in 0..2 {
                 assign(&samples, &chosen, &mut owner);
