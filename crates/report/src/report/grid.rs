@@ -39,7 +39,7 @@ fn verdict(found: &Convergence) -> String {
     let shocks = found.moved_shocks().map_or_else(String::new, |why| format!(": {why}"));
     format!(
         "The clouds are alike, each finer than the one before; {end}{shocks}. In the plane a load that approaches its limit with an order \
-         has 5/4 of the way to it as part of its error bar (with shocks 5/4 of the last change), another one the spread of the last clouds; in space that part is 5/4 of what \
+         has 5/4 of the way to it as part of its error bar (with shocks 5/4 of the last change, or twice that change where it shows another order than 1), another one the spread of the last clouds; in space that part is 5/4 of what \
          half the spacing changed. What the end of the domain does, what wall pressure and momentum differ by (all of it where that is \
          more than the last change, else half of it beyond what the latter may still change by), and what the last iterations changed are \
          the other parts, added as squares. Without shocks and viscosity a plane flow has no drag, and one in space loses no total pressure: \
