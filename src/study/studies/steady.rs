@@ -63,16 +63,7 @@ pub(crate) fn relax<S: HasGas<D>, const D: usize>(
         system.prescribe(0.0, &mut u);
     }
     let asked = spacing::asked(&log.case);
-    let again = turn.next().is_some_and(|stage| stage.task == Task::Relax);
-    let orders = match asked {
-        Some(_) => steady.orders + SETTLING,
-        // what an adapted cloud is refined by needs more
-        None if again && turn.stage().factor > 1.0 && spacing::begins_near(&log.case) => {
-            steady.orders.min(EARLY_ORDERS_OF_SHOCKS)
-        }
-        None if again => steady.orders.min(EARLY_ORDERS),
-        None => steady.orders,
-    };
+    let orders = orders(steady, turn, &log.case);
     let mut relax = Relax::new(system, control(steady, D), u, &system.start(), resume);
     relax.goal = 10f64.powf(-orders);
     let mut hurried = !turn.last();
@@ -108,6 +99,20 @@ pub(crate) fn relax<S: HasGas<D>, const D: usize>(
     let (gas, own) = (system.gas(), system.gas_unknowns());
     gas.without_circulation(system.gas_frame(&frame), system.gas_work(&mut work), &mut state[own]);
     Ok(Some(Reached { state, end: Some((frame, end)), enough, unsteady }))
+}
+
+/// Orders of magnitude by which the residual of this stage is to fall.
+fn orders<const D: usize>(steady: &Steady, turn: &Turn<'_, D>, case: &Case) -> f64 {
+    let again = turn.next().is_some_and(|stage| stage.task == Task::Relax);
+    match spacing::asked(case) {
+        Some(_) => steady.orders + SETTLING,
+        // what an adapted cloud is refined by needs more
+        None if again && turn.stage().factor > 1.0 && spacing::begins_near(case) => {
+            steady.orders.min(EARLY_ORDERS_OF_SHOCKS)
+        }
+        None if again => steady.orders.min(EARLY_ORDERS),
+        None => steady.orders,
+    }
 }
 
 /// Why a relaxation ended before its goal.
