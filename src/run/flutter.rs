@@ -14,7 +14,6 @@ use super::refusals;
 use crate::case::{Case, Matching};
 use crate::observe::sums;
 use crate::problem::files::text;
-use crate::problem::solids::told_of_own_modes;
 use crate::problem::{Problem, RunError};
 pub use crate::record::flutter::{
     Bars, Boundary, CaseReference, Clearance, Doubt, FlutterAt, FlutterRow, LimitCycle, MarchedCycle, Mark, MotionRow,
@@ -94,7 +93,7 @@ fn sought(
     let plan = planned(case)?;
     let problem = &Problem::of_case(case, input)?;
     let case = problem.given();
-    told_of_own_modes(case).iter().for_each(|told| monitor.note(told));
+    problem.modes().words().iter().for_each(|told| monitor.note(told));
     forces.map_or(Ok(()), |_| refused_with_forces(case, &plan))?;
     let stored = forces.map(read).transpose()?;
     let stored = stored.as_ref();

@@ -17,7 +17,7 @@ use crate::geometry::Surface;
 use crate::math::reduce::maximum;
 use crate::observe::table::write_json;
 use crate::observe::vtk::{Column, write_cells};
-use crate::problem::solids::{told_of_own_modes, with_gas};
+use crate::problem::solids::with_gas;
 use crate::problem::{Problem, ProblemIn, Remark, RunError, check_motion, numerics, rough, spacing};
 use crate::scheme::{Fluid, Frame, View};
 use crate::study::accuracy;
@@ -159,12 +159,12 @@ fn look<const D: usize>(
     notes.extend(seen.told(alone, cloud).into_iter().chain(accuracy::too_few(case, particles)));
     warnings.extend(check_motion(case, cloud, motions)?);
     let structure = solids::inspect_in_gas(case, input)?;
-    notes.extend(told_of_own_modes(case));
+    notes.extend(problem.modes().words());
     warnings.extend(structure.iter().flat_map(|s| s.warnings.iter().cloned()));
     numerics::marching(case, motions.period(), D)?;
     let axes = (!cloud.interface.is_empty()).then(|| load_axes(case, surface).axes(&fluid.view(&frame, u, &mut work)));
     let period = motions.period();
-    let pilot = pilot::fly(case, input, surface, n_fluid, period);
+    let pilot = pilot::fly(problem, n_fluid, period);
     let pixels = pixels(surface, &cloud.tree.bounds());
     let sizes = &spacing::sizes(case, surface, particles);
     warnings.extend(rough_on_the_finest(case, surface, sizes));
@@ -231,18 +231,17 @@ impl SampleCloud {
 /// The cloud of the case, or in space a coarser one of its family, where that of the case has many particles and moves nothing: its
 /// particles are counted on its background, which is a small part of the cost of the cloud.
 fn sample_cloud<const D: usize>(problem: &ProblemIn<D>) -> SampleCloud {
-    let cells = |factor: f64| {
-        let cells =
-            count(&CloudSpec::<D>::of_case(&spacing::of_stage(problem.case(), factor)), problem.surface(), &[]).ok()?;
-        Some(cells as f64)
-    };
     let case = problem.case();
+    let cells = |factor: f64| {
+        let spec = CloudSpec::<D>::of(&spacing::of_stage(case, factor), &case.boundary);
+        count(&spec, problem.surface(), &[]).ok().map(|cells| cells as f64)
+    };
     let moves = case.motion.is_some() || case.bodies.iter().any(|b| b.motion.is_some() || b.solid.is_some());
     if D == 2 || case.bodies.is_empty() || case.is_unsteady() || moves {
         return SampleCloud::PLAIN;
     }
     let Some(own) = cells(1.0).filter(|own| *own > QUICK) else { return SampleCloud::PLAIN };
-    let fits = |factor: &f64| numerics::divides(case, *factor);
+    let fits = |factor: &f64| numerics::divides(&case.cloud, *factor);
     let all = COARSER.into_iter().filter(fits).filter_map(|factor| Some((factor, cells(factor)?)));
     let all: Vec<(f64, f64)> = all.collect();
     let quick = all.iter().find(|(_, n)| *n <= QUICK).or(all.last());
@@ -301,7 +300,8 @@ fn cost_of_gaf<const D: usize>(
         for mode in plan.all_modes() {
             let length = plan.reduced_length.map_or(0.5 * chord.unwrap_or(1.0), |l| l.0);
             let period = std::f64::consts::TAU * length / (k * own.case.flow.reference().mach);
-            let case = &own.case.gaf_case(plan, mode, k, 1.0);
+            let swinging = problem.in_motion_of_gaf(plan, mode, k, 1.0)?;
+            let case = swinging.case();
             let one = Sized { case, period: Some(period), ..*own }.cost(|| 0.0);
             let seconds = all.seconds + 2.0 * one.seconds;
             all = Cost { bytes: all.bytes.max(one.bytes), seconds, disk: all.disk.max(one.disk) };

@@ -205,8 +205,9 @@ pub fn build_cloud<const D: usize>(
     input: &Path,
 ) -> Result<(Option<Surface<D>>, Cloud<D>, Vec<String>), RunError> {
     let (surface, notes) = problem::surface::<D>(case, input)?;
-    let case = spacing::with_cloud(case, surface.as_ref());
-    let cloud = Cloud::build(&problem::spec(&case), surface.as_ref(), &[])?;
+    let chosen = spacing::Chosen::of(case, surface.as_ref()).map(|chosen| chosen.cloud);
+    let spec = problem::spec_of(case, chosen.as_ref().unwrap_or(&case.cloud));
+    let cloud = Cloud::build(&spec, surface.as_ref(), &[])?;
     Ok((surface, cloud, notes))
 }
 

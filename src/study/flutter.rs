@@ -343,7 +343,7 @@ impl Place<'_> {
             let outer = part(if ratio == COARSER { 1 } else { 2 }, shocks);
             match self.on_coarser(at, ratio, &mut Within { outer, monitor: &mut *monitor })? {
                 Asked::Stopped => return Ok(false),
-                Asked::Told(coarse) => others.push((refinement(self.problem.given(), ratio), *coarse)),
+                Asked::Told(coarse) => others.push((refinement(&self.problem.given().cloud, ratio), *coarse)),
                 Asked::Silent => {}
             }
         }

@@ -7,7 +7,7 @@ use super::trial;
 use crate::case::{Case, Temporal};
 use crate::geometry::dimension;
 use crate::problem::RunError;
-use crate::problem::solids::{build, remembers, supported};
+use crate::problem::solids::{Filling, supported};
 use crate::solid::forces::State;
 use crate::solid::{Plane, Support};
 use crate::study::solids::possible;
@@ -61,9 +61,10 @@ pub(in super::super) fn inspect_in_gas(case: &Case, input: &Path) -> Result<Opti
 }
 
 fn report<const D: usize>(case: &Case, input: &Path) -> Result<SolidReport, RunError> {
-    let built = build::<D>(case, input)?;
+    let filling = Filling::of(case, input);
+    let built = filling.build::<D>()?;
     if case.has_gas() {
-        remembers(case, &built)?;
+        filling.remembers(&built)?;
     } else if let Temporal::Harmonics(plan) = &case.time {
         possible(&built, plan)?;
     }
@@ -79,7 +80,7 @@ fn report<const D: usize>(case: &Case, input: &Path) -> Result<SolidReport, RunE
         // the step of the gas is another one
         Temporal::Explicit(e) if case.has_gas() => (e.until.map(|until| until.0 / (e.cfl * stable_step)), true),
         Temporal::Newmark(n) => (Some(n.until.0 / n.step.0), false),
-        _ => trial::steps(case, input, &built).map_or((None, false), |s| (Some(s.number), !s.is_known)),
+        _ => trial::steps((case, filling), &built).map_or((None, false), |s| (Some(s.number), !s.is_known)),
     };
     let mut warnings = built.warnings;
     // a body of revolution moves as a whole along its axis alone

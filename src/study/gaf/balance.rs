@@ -51,7 +51,7 @@ pub(super) fn columns(
             matrices.columns.push(column);
             keep(matrices)?;
             let one = own(1.0)?.on_cloud(cloud)?;
-            ratio = refinement(one.given(), COARSER);
+            ratio = refinement(&one.given().cloud, COARSER);
             match swing.on_coarser(&one, monitor)? {
                 Asked::Stopped => return Ok(false),
                 Asked::Told(column) => coarse.push(*column),

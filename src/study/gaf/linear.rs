@@ -133,7 +133,7 @@ impl Asked<'_> {
             match self.about(&coarse, &mut add, &mut Within { outer, monitor: &mut Quiet { monitor } }) {
                 Ok(Some(flow)) if flow.solved => {
                     shocks |= flow.shocks;
-                    others.push(OnCoarser { ratio: refinement(one.given(), ratio), columns: other });
+                    others.push(OnCoarser { ratio: refinement(&one.given().cloud, ratio), columns: other });
                 }
                 Ok(Some(_)) => monitor.note("the coarser cloud tells nothing: the steady flow on it did not converge"),
                 Ok(None) => return Ok(None),
