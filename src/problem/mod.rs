@@ -1,6 +1,7 @@
 //! Problems: a case with all that it names, resolved once and not changed afterwards.
 mod any;
 mod assemble;
+mod body_table;
 pub(crate) mod coarser;
 mod error;
 pub(crate) mod files;
@@ -25,6 +26,7 @@ mod supported;
 
 pub use any::Problem;
 pub(crate) use assemble::{coupled, gas, in_stream};
+pub use body_table::{BodyTable, Measures, body_table};
 pub use error::{Blame, RunError};
 pub use in_dimension::ProblemIn;
 pub(crate) use motion_feasibility::check as check_motion;

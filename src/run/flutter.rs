@@ -3,12 +3,10 @@ mod files;
 mod kept;
 mod skin;
 mod state_space;
-mod tables;
 
 use std::path::{Path, PathBuf};
 
 use self::kept::Kept;
-use self::skin::Skin;
 use super::folder::{self, Places};
 use super::refusals;
 use crate::case::{Case, Matching};
@@ -21,7 +19,8 @@ pub use crate::record::flutter::{
 };
 use crate::study::Monitor;
 use crate::study::flutter::{
-    BoundaryKeeper, Held, InMemory, Scales, Stored, boundary, coordinate, planned, refused_with_forces, unreadable,
+    BoundaryKeeper, Held, InMemory, Scales, Skin, Stored, boundary, coordinate, planned, refused_with_forces,
+    unreadable,
 };
 
 /// Seeks the boundary of the table `[flutter]`, into a fresh folder; `None` when the monitor says stop.

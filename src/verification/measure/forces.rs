@@ -5,10 +5,11 @@ use std::path::Path;
 use num_complex::Complex64;
 use serde::{Deserialize, Serialize};
 
-use super::super::gaf::{Column, Matrices};
 use super::{Value, at_no_thickness, designed_thickness};
 use crate::case::Case;
-use crate::verify::{Claim, Metric, Table};
+use crate::study::gaf::{Column, Matrices};
+use crate::verify::metric::ForceMetric;
+use crate::verify::{Claim, Table};
 
 /// Part by which reduced frequencies may differ.
 const SAME: f64 = 1e-9;
@@ -30,9 +31,13 @@ impl Force {
     }
 }
 
-/// The metric of `claim` of the forces on a section, extrapolated to none of its thickness where there are several; `folder` has the table,
+/// A metric of the forces on a section, extrapolated to none of its thickness where there are several; `folder` has the table,
 /// with the columns `mode`, `k`, `coefficient` (`cl` or `cm`), `re` and `im`.
-pub(in super::super) fn value(sections: &[(&Case, &[Force])], claim: &Claim, folder: &Path) -> Value {
+pub(in super::super) fn value(
+    sections: &[(&Case, &[Force])],
+    (metric, claim): (ForceMetric, &Claim),
+    folder: &Path,
+) -> Value {
     let name = claim.file.as_deref().ok_or("the claim names no `file` of forces")?;
     let wrong = |e: &dyn std::fmt::Display| format!("`{name}`: {e}");
     let text = fs::read_to_string(folder.join(name)).map_err(|e| wrong(&e))?;
@@ -57,9 +62,9 @@ pub(in super::super) fn value(sections: &[(&Case, &[Force])], claim: &Claim, fol
             found += weight * coefficient(column, &coefficients[row])?;
         }
         let over = found / Complex64::new(re[row], im[row]);
-        let apart = match claim.metric {
-            Metric::ForcePhaseError => over.arg().to_degrees(),
-            _ => over.norm() - 1.0,
+        let apart = match metric {
+            ForceMetric::ForcePhaseError => over.arg().to_degrees(),
+            ForceMetric::ForceAmplitudeError => over.norm() - 1.0,
         };
         worst = worst.max(apart.abs());
     }

@@ -3,6 +3,7 @@ use std::path::Path;
 
 use serde::Serialize;
 
+use super::super::solids::possible;
 use super::trial;
 use crate::case::{Case, Temporal};
 use crate::geometry::dimension;
@@ -10,7 +11,6 @@ use crate::problem::RunError;
 use crate::problem::solids::{Filling, supported};
 use crate::solid::forces::State;
 use crate::solid::{Plane, Support};
-use crate::study::solids::possible;
 use crate::system::Mechanical;
 
 /// A structure of particles before it is computed, in SI units; in the plane of the thickness of the case, of a whole turn about an axis.
@@ -56,7 +56,7 @@ pub fn inspect_structure(case: &Case, input: &Path) -> Result<SolidReport, RunEr
 }
 
 /// What the bodies made of particles in a gas are; `None` where there are none.
-pub(in super::super) fn inspect_in_gas(case: &Case, input: &Path) -> Result<Option<SolidReport>, RunError> {
+pub(super) fn inspect_in_gas(case: &Case, input: &Path) -> Result<Option<SolidReport>, RunError> {
     case.solids().next().is_some().then(|| inspect_structure(case, input)).transpose()
 }
 

@@ -13,15 +13,13 @@ use std::path::{Path, PathBuf};
 use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
 
-use super::super::measure::{Measured, Numbers, boundary, forces, solid};
-use super::super::outcome::Outcome;
-use super::super::session::Session;
-use super::super::{flutter, gaf};
+use super::measure::{Measured, Numbers, boundary, forces, solid};
 use crate::case::Case;
 use crate::observe::table::write_json;
 use crate::observe::usage::cpu_seconds;
 use crate::observe::{Checkpoint, checkpoint};
 use crate::problem::RunError;
+use crate::run::{Outcome, Session, flutter, gaf};
 use crate::study::Monitor;
 use crate::study::monitor::Quiet;
 use crate::study::solids;

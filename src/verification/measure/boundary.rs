@@ -1,9 +1,10 @@
 //! What is measured of a flutter boundary.
 use serde::{Deserialize, Serialize};
 
-use super::super::flutter::Boundary;
 use super::Value;
-use crate::verify::{Claim, Metric};
+use crate::record::flutter::Boundary;
+use crate::verify::Claim;
+use crate::verify::metric::FlutterMetric;
 
 /// Part by which Mach numbers may differ.
 const SAME: f64 = 1e-9;
@@ -69,31 +70,33 @@ impl From<&Boundary> for Numbers {
     }
 }
 
-/// The metric of `claim` of a boundary, and of another one where the claim compares them.
-pub(in super::super) fn value(boundary: &Numbers, other: Option<&Numbers>, claim: &Claim) -> Value {
-    if claim.metric == Metric::LimitCycleMarch {
-        let difference = boundary.cycles.iter().find_map(|c| c.marched).ok_or("no limit cycle was marched")?;
-        return Ok(difference.abs());
-    }
-    if matches!(claim.metric, Metric::LimitCycleIndex | Metric::LimitCycleError) {
-        let largest = boundary.cycles.iter().max_by(|a, b| a.amplitude.total_cmp(&b.amplitude));
-        let cycle = largest.ok_or("there are no limit cycles")?;
-        return match claim.metric {
-            Metric::LimitCycleError => Ok(cycle.error),
-            _ => cycle.speed_index.ok_or_else(|| "the structure has no speed index".into()),
-        };
-    }
-    let first = flutter(boundary, claim)?;
-    match claim.metric {
-        Metric::FlutterSpeed => Ok(first.speed),
-        Metric::FlutterIndex => first.speed_index.ok_or_else(|| "the structure has no speed index".into()),
-        Metric::FlutterFrequency => Ok(first.frequency_ratio.unwrap_or(first.frequency)),
-        Metric::FlutterError => Ok(first.error),
-        Metric::FlutterDifference => {
+/// A metric of a boundary, and of another one where the `claim` compares them.
+pub(in super::super) fn value(
+    boundary: &Numbers,
+    other: Option<&Numbers>,
+    (metric, claim): (FlutterMetric, &Claim),
+) -> Value {
+    let first = || flutter(boundary, claim);
+    let largest = || {
+        let found = boundary.cycles.iter().max_by(|a, b| a.amplitude.total_cmp(&b.amplitude));
+        found.ok_or_else(|| "there are no limit cycles".to_owned())
+    };
+    let index = |found: Option<f64>| found.ok_or_else(|| "the structure has no speed index".to_owned());
+    match metric {
+        FlutterMetric::FlutterSpeed => Ok(first()?.speed),
+        FlutterMetric::FlutterIndex => index(first()?.speed_index),
+        FlutterMetric::FlutterFrequency => first().map(|f| f.frequency_ratio.unwrap_or(f.frequency)),
+        FlutterMetric::FlutterError => Ok(first()?.error),
+        FlutterMetric::FlutterDifference => {
             let other = flutter(other.ok_or("the claim names no `other` case")?, claim)?;
-            Ok((first.speed / other.speed - 1.0).abs())
+            Ok((first()?.speed / other.speed - 1.0).abs())
         }
-        other => Err(format!("`{}` is not measured of a flutter boundary", other.name())),
+        FlutterMetric::LimitCycleIndex => index(largest()?.speed_index),
+        FlutterMetric::LimitCycleError => Ok(largest()?.error),
+        FlutterMetric::LimitCycleMarch => {
+            let marched = boundary.cycles.iter().find_map(|c| c.marched);
+            marched.map(f64::abs).ok_or_else(|| "no limit cycle was marched".to_owned())
+        }
     }
 }
 

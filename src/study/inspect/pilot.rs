@@ -4,15 +4,16 @@
 //! those of a section at Mach 0.5. What does not depend on the number of particles is seen on few of them.
 use std::time::{Duration, Instant};
 
+use super::super::cost::Pilot;
+use super::super::flow::in_memory_in;
+use super::super::look::Snapshot;
+use super::super::monitor::{Monitor, Tick};
+use super::super::setup::behind_shocks;
 use crate::case::{Case, Dual, Initial, Temporal, Time};
 use crate::cloud::CloudSpec;
 use crate::cloud::layout::count;
 use crate::geometry::Surface;
 use crate::problem::{ProblemIn, numerics};
-use crate::study::cost::Pilot;
-use crate::study::flow::in_memory_in;
-use crate::study::setup::behind_shocks;
-use crate::study::{Monitor, Snapshot, Tick};
 
 /// Greatest number of particles of a pilot: a fraction of a second in the plane.
 const MOST: f64 = 6000.0;
