@@ -231,7 +231,7 @@ impl Walk {
         let other = other.map(|other| self.ensure(Kind::Flutter, &other, &other.case, monitor));
         let own = self.ensure(Kind::Flutter, folder, &folder.case, monitor);
         let numbers = |key: &str| match self.store.at(key)? {
-            Found::Flutter(numbers) => Ok(numbers),
+            Found::Flutter(boundary) => Ok(&**boundary),
             _ => Err(String::from("the case has no flutter boundary")),
         };
         let other = other.as_deref().map(numbers).transpose()?;

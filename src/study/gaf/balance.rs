@@ -6,7 +6,7 @@ use super::super::flow;
 use super::super::monitor::{Monitor, Quiet};
 use super::super::solution::Solution;
 use super::cloud_error::{self, OnCoarser};
-use super::record::{Column, Matrices};
+use super::{Column, Matrices};
 use crate::case::{AnyMode, Cloud, Gaf, Mode};
 use crate::problem::coarser::{COARSER, refinement};
 use crate::problem::{Problem, RunError};

@@ -14,7 +14,7 @@ use super::super::solution::Solution;
 use super::super::studies::{ForceSource, SOLVED, in_order};
 use super::super::time_left::Portion;
 use super::cloud_error::{self, OnCoarser};
-use super::record::{Column, Matrices, Solved};
+use super::{Column, Matrices, Solved};
 use crate::case::{AnyMode, Case, Cloud, Gaf, Mode};
 use crate::geometry::dimension;
 use crate::problem::coarser::{BETWEEN, COARSER, coarser, refinement, times_the_spacing};

@@ -3,38 +3,20 @@ use std::fs;
 use std::path::Path;
 
 use num_complex::Complex64;
-use serde::{Deserialize, Serialize};
 
 use super::{Value, at_no_thickness, designed_thickness};
 use crate::case::Case;
-use crate::study::gaf::{Column, Matrices};
+use crate::record::gaf::Column;
 use crate::verify::metric::ForceMetric;
 use crate::verify::{Claim, Table};
 
 /// Part by which reduced frequencies may differ.
 const SAME: f64 = 1e-9;
 
-/// Lift and moment per motion in a mode at a reduced frequency: real and imaginary parts.
-#[derive(Clone, Debug, Serialize, Deserialize)]
-pub(in super::super) struct Force {
-    k: f64,
-    mode: String,
-    cl: [f64; 2],
-    cm: [f64; 2],
-}
-
-impl Force {
-    /// All forces of the matrices, frequency by frequency.
-    pub(in super::super) fn all(matrices: &Matrices) -> Vec<Self> {
-        let force = |c: &Column| Self { k: c.k, mode: c.mode.clone(), cl: c.cl, cm: c.cm };
-        matrices.columns.iter().map(force).collect()
-    }
-}
-
 /// A metric of the forces on a section, extrapolated to none of its thickness where there are several; `folder` has the table,
 /// with the columns `mode`, `k`, `coefficient` (`cl` or `cm`), `re` and `im`.
 pub(in super::super) fn value(
-    sections: &[(&Case, &[Force])],
+    sections: &[(&Case, &[Column])],
     (metric, claim): (ForceMetric, &Claim),
     folder: &Path,
 ) -> Value {
@@ -71,7 +53,7 @@ pub(in super::super) fn value(
     if table.is_empty() { Err(wrong(&"no forces")) } else { Ok(worst) }
 }
 
-fn coefficient(column: &Force, name: &str) -> Result<Complex64, String> {
+fn coefficient(column: &Column, name: &str) -> Result<Complex64, String> {
     let [re, im] = match name {
         "cl" => column.cl,
         "cm" => column.cm,
