@@ -98,8 +98,8 @@ fn sought(
     let stored = stored.as_ref();
     let Some(out) = out else { return boundary(problem, (&plan, stored), &mut InMemory, monitor) };
     let _held = folder::create_once(case, input, out)?;
-    let kept = Kept::of(case, input, Some(out))?;
-    kept.write(Some(out))?;
+    let kept = Kept::of(case, input, out)?;
+    kept.write(out)?;
     let mut folder = Folder { out, problem, kept, draws: case.output.report, skin: None };
     let found = boundary(problem, (&plan, stored), &mut folder, monitor)?;
     if found.is_some() {
@@ -135,7 +135,7 @@ impl BoundaryKeeper for Folder<'_> {
 
     fn keep(&mut self, at: &FlutterAt) -> Result<(), RunError> {
         self.kept.add(at);
-        self.kept.write(Some(self.out))
+        self.kept.write(self.out)
     }
 
     fn so_far(&mut self, boundary: &Boundary) -> Result<(), RunError> {
