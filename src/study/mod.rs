@@ -16,7 +16,7 @@
 //! fields of a flow), `record` (what a study knows about itself), `found` (what it tells at its end), `setup` (from a problem to its
 //! equations on a cloud), `keeper` (what is handed over on the way), `watch` (the loop that drives any integrator, and those who watch it),
 //! `studies` (what is done on one cloud), `course` and `flow` (the way through the stages), `solids` (structures of particles alone),
-//! `flutter`, `gaf`.
+//! `flutter`, `gaf`; beside them `inspect` (what is known of a problem before it is solved) and `cloud_table`.
 pub(crate) mod accuracy;
 mod build;
 mod cloud_table;
