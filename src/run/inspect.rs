@@ -58,6 +58,6 @@ fn write<const D: usize>(to: &Target<'_>, problem: &ProblemIn<D>, fluid: &Fluid<
     let about = about::gas(to.case, "spacing", None);
     write_cells(&to.out.join("cloud.vtu"), &about, &points, Mesh::of(cloud, &held, &rim).cells(), &columns)?;
     write_json(&to.out.join("doctor.json"), &Diagnosis::of(cloud, fluid.discretisation.walls.n_linear))?;
-    let view = View::new(fluid, &frame, &mut work);
+    let view = View::new(fluid, &frame, &work);
     write_cloud(&Scene { to: *to, view, surface: problem.surface(), chord: 1.0, vortex: None })
 }
