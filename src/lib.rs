@@ -26,4 +26,5 @@ pub mod coupling;
 pub mod problem;
 pub mod run;
 pub mod study;
+pub mod verification;
 pub mod verify;

@@ -66,6 +66,51 @@ impl Damped {
     }
 }
 
+/// Complex amplitudes of a pair (u, v), real and imaginary parts.
+type Waves = [[f64; 2]; 2];
+
+/// Row `row` of a matrix over instances or coefficients times number `which` of the pairs `k` of all of them.
+fn weighted(matrix: &Matrix, row: usize, [k, which]: [usize; 2], all: &[Vec<[f64; 2]>]) -> f64 {
+    matrix.row(row).iter().zip(all).map(|(w, part)| w * part[k][which]).sum::<f64>()
+}
+
+/// The pairs of one harmonic with λ = s + ikω, `lambda`, from the right-hand sides `known`; `omega` is the pace of what is held.
+fn solve_harmonic<const D: usize>(
+    solids: &Solids<D>,
+    (factors, rubbed): (&mut ComplexFactors, Option<&Symmetric>),
+    lambda: Complex64,
+    omega: f64,
+    known: &[Waves],
+) -> Vec<Waves> {
+    let (s, w, damped, solid) = (lambda.re, lambda.im, Damped::of(solids), &solids.structure.solid);
+    let held = |k: usize| solid.is_held(k / D, k % D);
+    let mass = |k: usize| solid.mass()[k / D] * solids.scales.speed * solids.scales.speed;
+    // r_v + (λ + α) r_u
+    let a = s + damped.mass;
+    let inertia = |k: usize| {
+        let [u, v] = known[k];
+        [mass(k) * (v[0] + a * u[0] - w * u[1]), mass(k) * (v[1] + a * u[1] + w * u[0])]
+    };
+    let mut x: Vec<[f64; 2]> = (0..known.len()).map(|k| if held(k) { [0.0; 2] } else { inertia(k) }).collect();
+    if let Some(rubbed) = rubbed {
+        let elastic = damped.elastic(lambda);
+        let [re, im] = [0, 1].map(|part| pulled(rubbed, &held, known.iter().map(|pair| pair[0][part])));
+        for (k, x) in x.iter_mut().enumerate() {
+            let divided = Complex64::new(x[0] + re[k], x[1] + im[k]) / elastic;
+            *x = [divided.re, divided.im];
+        }
+    }
+    factors.solve(&mut x);
+    let pair = |k: usize| {
+        if held(k) {
+            return known[k].map(|r| r.map(|r| r / (s + omega)));
+        }
+        let (u, r) = (x[k], known[k][0]);
+        [u, [s * u[0] - w * u[1] - r[0], s * u[1] + w * u[0] - r[1]]]
+    };
+    (0..known.len()).map(pair).collect()
+}
+
 /// The preconditioner of bodies made of particles.
 pub(super) struct SolidPreconditioner<const D: usize> {
     solids: Arc<Solids<D>>,
@@ -274,48 +319,18 @@ impl<const D: usize> SolidPreconditioner<D> {
             return;
         };
         let (forward, back) = (period.instances.to_coefficients(), period.instances.to_values());
-        let (h, n, damped) = (period.instances.harmonics(), parts[0].len(), Damped::of(&solids));
-        let solid = &solids.structure.solid;
-        let held = |k: usize| solid.is_held(k / D, k % D);
-        let mass = |k: usize| solid.mass()[k / D] * solids.scales.speed * solids.scales.speed;
-        let sum = |matrix: &Matrix, row: usize, k: usize, which: usize, all: &[Vec<[f64; 2]>]| {
-            matrix.row(row).iter().zip(all).map(|(w, part)| w * part[k][which]).sum::<f64>()
-        };
-        let mut found = vec![vec![[0.0; 2]; n]; 2 * h + 1];
+        let h = period.instances.harmonics();
+        let mut found = vec![vec![[0.0; 2]; parts[0].len()]; 2 * h + 1];
         for (m, factors) in factors.iter_mut().enumerate() {
-            let w = m as f64 * period.omega;
             // q = Re(q̂ exp(iωt)): q̂ = cosine − i sine
             let complex = |k: usize, which: usize| match m {
-                0 => [sum(&forward, 0, k, which, parts), 0.0],
-                _ => [sum(&forward, m, k, which, parts), -sum(&forward, m + h, k, which, parts)],
+                0 => [weighted(&forward, 0, [k, which], parts), 0.0],
+                _ => [weighted(&forward, m, [k, which], parts), -weighted(&forward, m + h, [k, which], parts)],
             };
-            let mut x = vec![[0.0; 2]; n];
-            let mut known = vec![[[0.0; 2]; 2]; n];
-            for k in 0..n {
-                let [u, v] = [complex(k, 0), complex(k, 1)];
-                known[k] = [u, v];
-                if !held(k) {
-                    // r_v + (λ + α) r_u
-                    let a = s + damped.mass;
-                    x[k] = [mass(k) * (v[0] + a * u[0] - w * u[1]), mass(k) * (v[1] + a * u[1] + w * u[0])];
-                }
-            }
-            if let Some(rubbed) = rubbed {
-                let elastic = damped.elastic(Complex64::new(s, w));
-                let [re, im] = [0, 1].map(|part| pulled(rubbed, &held, known.iter().map(|pair| pair[0][part])));
-                for (k, x) in x.iter_mut().enumerate() {
-                    let divided = Complex64::new(x[0] + re[k], x[1] + im[k]) / elastic;
-                    *x = [divided.re, divided.im];
-                }
-            }
-            factors.solve(&mut x);
-            for k in 0..n {
-                let [u, v] = if held(k) {
-                    known[k].map(|r| r.map(|r| r / (s + self.omega)))
-                } else {
-                    let (u, r) = (x[k], known[k][0]);
-                    [u, [s * u[0] - w * u[1] - r[0], s * u[1] + w * u[0] - r[1]]]
-                };
+            let known: Vec<Waves> = (0..parts[0].len()).map(|k| [complex(k, 0), complex(k, 1)]).collect();
+            let w = m as f64 * period.omega;
+            let solved = solve_harmonic(&solids, (factors, rubbed.as_ref()), Complex64::new(s, w), self.omega, &known);
+            for (k, [u, v]) in solved.into_iter().enumerate() {
                 found[m][k] = [u[0], v[0]];
                 if m > 0 {
                     found[m + h][k] = [-u[1], -v[1]];
@@ -324,7 +339,7 @@ impl<const D: usize> SolidPreconditioner<D> {
         }
         for (m, part) in parts.iter_mut().enumerate() {
             for (k, pair) in part.iter_mut().enumerate() {
-                *pair = [sum(&back, m, k, 0, &found), sum(&back, m, k, 1, &found)];
+                *pair = [weighted(&back, m, [k, 0], &found), weighted(&back, m, [k, 1], &found)];
             }
         }
     }

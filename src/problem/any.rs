@@ -6,8 +6,9 @@ use super::files;
 use super::in_dimension::ProblemIn;
 use super::remark::Remark;
 use super::small_motion::March;
+use super::solids::NaturalModes;
 use super::stream::StreamRatio;
-use crate::case::{self, AnyMode, Case, Cloud, FreeStreamScales, Gaf};
+use crate::case::{self, AnyMode, Case, Cloud, FreeStreamScales, Gaf, Temporal};
 use crate::geometry::dimension;
 
 /// A case with everything that it names, resolved: what a study computes. It is never changed; its methods give other problems.
@@ -72,9 +73,14 @@ impl Problem {
         either!(self, p => p.case())
     }
 
-    /// The case as it is given, with own modes where it asks for them.
+    /// The case as it is given.
     pub(crate) fn given(&self) -> &Case {
         either!(self, p => p.given())
+    }
+
+    /// Natural modes of its bodies.
+    pub(crate) fn modes(&self) -> &NaturalModes {
+        either!(self, p => p.modes())
     }
 
     /// Folder that file names of the case refer to.
@@ -139,5 +145,10 @@ impl Problem {
     /// The motion of one mode of `[gaf]` at the reduced frequency `k`, with `factor` times its amplitude.
     pub(crate) fn in_motion_of_gaf(&self, gaf: &Gaf, mode: AnyMode<'_>, k: f64, factor: f64) -> Result<Self, RunError> {
         other!(self, p => p.in_motion_of_gaf(gaf, mode, k, factor)?)
+    }
+
+    /// A further run that tells error bars, see [`ProblemIn::further`].
+    pub(crate) fn further(&self, cloud: Cloud, time: Temporal) -> Result<Self, RunError> {
+        other!(self, p => p.further(cloud, time)?)
     }
 }

@@ -4,7 +4,7 @@ use std::sync::Arc;
 use super::error::RunError;
 use super::in_dimension::ProblemIn;
 use super::reference::chord;
-use super::size::spec;
+use super::size::{spec, spec_of};
 use super::spacing;
 use super::supported::conserves;
 use crate::case::{Case, ParticleMotion};
@@ -34,10 +34,9 @@ pub(crate) fn gas<const D: usize>(
     ready: Option<Cloud<D>>,
 ) -> Result<Fluid<D>, RunError> {
     let (case, surface, motions) = (problem.case(), problem.surface(), problem.motions());
-    let scaled = spacing::of_stage(case, factor);
     let mut cloud = match ready.filter(|_| sources.is_empty()) {
         Some(cloud) => cloud,
-        None => Cloud::build(&spec(&scaled), surface, sources)?,
+        None => Cloud::build(&spec_of(case, &spacing::of_stage(case, factor)), surface, sources)?,
     };
     let conservative = conserves(case);
     let mut operators = Operators::new(&cloud);

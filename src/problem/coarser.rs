@@ -4,7 +4,7 @@
 //! loads then scatter from cloud to cloud, and two of them may agree by chance. There a third one is asked, with 3/2 of the spacing.
 use super::numerics;
 use super::spacing::{asked, scaled};
-use crate::case::Case;
+use crate::case::{Case, Cloud};
 use crate::math::digits::short;
 
 /// Spacing of the coarser cloud over that of the case, and of the third one where there are shocks.
@@ -16,17 +16,17 @@ pub(crate) fn times_the_spacing(ratio: f64) -> String {
     if ratio == 2.0 { "twice the spacing".to_owned() } else { format!("{} times the spacing", short(ratio)) }
 }
 
-/// The case `own`, whose spacing is known, with `ratio` times the spacing; `None` where that does not fit into the domain, and where clouds
-/// are refined by what was found on the one before.
-pub(crate) fn coarser(own: &Case, ratio: f64) -> Option<Case> {
+/// The cloud of the case `own`, whose spacing is known, with `ratio` times the spacing; `None` where that does not fit into the domain, and
+/// where clouds are refined by what was found on the one before.
+pub(crate) fn coarser(own: &Case, ratio: f64) -> Option<Cloud> {
     let one = asked(own).is_none() && own.cloud.spacing.is_some() && own.adapt.cycles == 0;
-    (one && numerics::divides(own, ratio)).then(|| scaled(own, ratio))
+    (one && numerics::divides(&own.cloud, ratio)).then(|| scaled(&own.cloud, ratio))
 }
 
-/// How much finer the cloud of the case `own` is than the one with `ratio` times the spacing where they differ least: a cloud with few particles
+/// How much finer the cloud `own` is than the one with `ratio` times the spacing where they differ least: a cloud with few particles
 /// per level has no fewer on the coarser one, and errors made far from the walls fall no faster than that.
-pub(crate) fn refinement(own: &Case, ratio: f64) -> f64 {
-    ratio.min(own.cloud.particles_per_level() / scaled(own, ratio).cloud.particles_per_level())
+pub(crate) fn refinement(own: &Cloud, ratio: f64) -> f64 {
+    ratio.min(own.particles_per_level() / scaled(own, ratio).particles_per_level())
 }
 
 #[cfg(test)]
@@ -34,23 +34,28 @@ mod tests {
     use std::path::Path;
 
     use super::super::open::surface;
-    use super::super::spacing::{Forces, on_one_cloud};
+    use super::super::spacing::{Forces, one_cloud};
     use super::*;
     use crate::geometry::dimension;
 
-    fn cloud(body: &str, cloud: &str) -> Case {
+    fn case(body: &str, cloud: &str) -> Case {
         let text = format!("[flow]\nmach = 0.5\n[[body]]\n{body}\n[cloud]\n{cloud}\n");
-        let case = crate::case::read(&text, "t").unwrap();
-        match dimension(&case) {
-            2 => on_one_cloud(case.clone(), surface::<2>(&case, Path::new("")).unwrap().0.as_ref(), Forces::Table),
-            _ => on_one_cloud(case.clone(), surface::<3>(&case, Path::new("")).unwrap().0.as_ref(), Forces::Table),
-        }
+        crate::case::read(&text, "t").unwrap()
+    }
+
+    fn cloud(body: &str, cloud: &str) -> Cloud {
+        let case = case(body, cloud);
+        let one = match dimension(&case) {
+            2 => one_cloud(&case, surface::<2>(&case, Path::new("")).unwrap().0.as_ref(), Forces::Table),
+            _ => one_cloud(&case, surface::<3>(&case, Path::new("")).unwrap().0.as_ref(), Forces::Table),
+        };
+        one.unwrap_or(case.cloud)
     }
 
     #[test]
     fn sections_have_spacings_that_follow_thickness_nose_and_edges() {
         let told = |body: &str, more: &str| {
-            let c = cloud(body, more).cloud;
+            let c = cloud(body, more);
             (c.spacing.map_or(0.0, |h| 1.0 / h.0), c.edge_levels, c.curvature_levels)
         };
         assert_eq!(told("naca = \"0012\"", ""), (64.0, 10, 10));
@@ -79,9 +84,9 @@ mod tests {
 
     #[test]
     fn the_coarser_cloud_has_twice_the_spacing_where_that_fits() {
-        let spacing = |case: &Case| coarser(case, COARSER).and_then(|c| c.cloud.spacing.map(|h| h.0));
-        assert_eq!(spacing(&cloud("naca = \"0012\"", "")), Some(1.0 / 32.0));
-        let odd = "spacing = 0.1\ndomain = { min = [-1.5, -1.5], max = [1.5, 1.4] }";
-        assert_eq!(spacing(&cloud("naca = \"0012\"", odd)), None);
+        let spacing =
+            |keys: &str| coarser(&case("naca = \"0012\"", keys), COARSER).and_then(|c| c.spacing.map(|h| h.0));
+        assert_eq!(spacing("spacing = 0.015625"), Some(1.0 / 32.0));
+        assert_eq!(spacing("spacing = 0.1\ndomain = { min = [-1.5, -1.5], max = [1.5, 1.4] }"), None);
     }
 }

@@ -1,9 +1,11 @@
 //! Problems: a case with all that it names, resolved once and not changed afterwards.
 mod any;
 mod assemble;
+mod body_table;
 pub(crate) mod coarser;
 mod error;
 pub(crate) mod files;
+mod given;
 mod in_dimension;
 mod modes;
 mod motion_feasibility;
@@ -24,13 +26,14 @@ mod supported;
 
 pub use any::Problem;
 pub(crate) use assemble::{coupled, gas, in_stream};
+pub use body_table::{BodyTable, Measures, body_table};
 pub use error::{Blame, RunError};
 pub use in_dimension::ProblemIn;
 pub(crate) use motion_feasibility::check as check_motion;
 pub(crate) use open::surface;
 pub use remark::Remark;
 pub(crate) use sanity::rough;
-pub(crate) use size::{bytes_each, spec};
+pub(crate) use size::{bytes_each, spec, spec_of};
 pub(crate) use small_motion::March;
 pub use stream::StreamRatio;
 pub(crate) use structures::Described;

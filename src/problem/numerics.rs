@@ -1,6 +1,6 @@
 //! Numerics of a problem: what its case says of integrators, as these want it.
 use super::error::RunError;
-use crate::case::{self, Case, HarmonicCount, Harmonics, RungeKutta, Steady, SteadyMethod, Temporal};
+use crate::case::{self, Case, Cloud, HarmonicCount, Harmonics, RungeKutta, Steady, SteadyMethod, Temporal};
 use crate::math::multilevel::Cycle;
 use crate::time::control::{Control, Method};
 use crate::time::dual::Plan;
@@ -94,10 +94,10 @@ pub(crate) fn marching(case: &Case, period: Option<f64>, dimension: usize) -> Re
 }
 
 /// True where a cloud with `factor` times the spacing fits into the domain: a start on one that does not is left out.
-pub(crate) fn divides(case: &Case, factor: f64) -> bool {
+pub(crate) fn divides(cloud: &Cloud, factor: f64) -> bool {
     /// What a number of cells may be off a whole one, relative to it.
     const MISFIT: f64 = 1e-7;
-    let Some((domain, spacing)) = case.cloud.domain.as_ref().zip(case.cloud.spacing.as_ref()) else { return true };
+    let Some((domain, spacing)) = cloud.domain.as_ref().zip(cloud.spacing.as_ref()) else { return true };
     domain.min.iter().zip(&domain.max).all(|(min, max)| {
         let cells = (max.0 - min.0) / (factor * spacing.0);
         cells > 0.5 && (cells - cells.round()).abs() <= MISFIT * cells

@@ -4,7 +4,7 @@ use super::numerics;
 use super::reference::chord;
 use super::scales;
 use super::spacing::{ACROSS, asked};
-use crate::case::{Case, NEVER_LAMINAR, NO_CONTINUUM, Temporal};
+use crate::case::{Case, Cloud, NEVER_LAMINAR, NO_CONTINUUM, Temporal};
 use crate::geometry::Surface;
 use crate::motion::{MOST_PERIODS, Motions};
 
@@ -60,13 +60,13 @@ pub(crate) fn sane<const D: usize>(
         }
     }
     // the result of a family of clouds is told on one that is not known yet
-    let rough = if asked(case).is_none() { rough(case, surface) } else { Vec::new() };
+    let rough = if asked(case).is_none() { rough(&case.cloud, surface) } else { Vec::new() };
     Ok(rough.into_iter().chain(doubtful(case, surface)).collect())
 }
 
-/// Bodies whose loads the spacing of a case leaves a rough guess.
-pub(crate) fn rough<const D: usize>(case: &Case, surface: Option<&Surface<D>>) -> Vec<String> {
-    let (Some(spacing), Some(surface)) = (case.cloud.spacing.map(|l| l.0), surface) else { return Vec::new() };
+/// Bodies whose loads the spacing of a cloud leaves a rough guess.
+pub(crate) fn rough<const D: usize>(cloud: &Cloud, surface: Option<&Surface<D>>) -> Vec<String> {
+    let (Some(spacing), Some(surface)) = (cloud.spacing.map(|l| l.0), surface) else { return Vec::new() };
     let lengths = (0..surface.bodies.len()).map(|body| surface.bounds_of(body).extent().max_abs() / spacing);
     let told = |(length, name): (f64, &String)| {
         let words = || format!("body `{name}` is only {length:.1} spacings long: its loads are a rough guess");

@@ -1,6 +1,6 @@
 //! How large a cloud may be on this machine.
 use super::numerics::harmonics;
-use crate::case::{Case, ParticleMotion, Temporal};
+use crate::case::{Case, Cloud, ParticleMotion, Temporal};
 use crate::cloud::CloudSpec;
 use crate::observe::usage::available_bytes;
 
@@ -18,7 +18,12 @@ const SPACE_BYTES: f64 = 1.3;
 
 /// The cloud that a case describes, no larger than what memory holds.
 pub(crate) fn spec<const D: usize>(case: &Case) -> CloudSpec<D> {
-    let spec = CloudSpec::of_case(case);
+    spec_of(case, &case.cloud)
+}
+
+/// Another cloud for the same case, no larger than what memory holds.
+pub(crate) fn spec_of<const D: usize>(case: &Case, cloud: &Cloud) -> CloudSpec<D> {
+    let spec = CloudSpec::of(cloud, &case.boundary);
     let each = SURELY * bytes_each(case, D);
     let held = available_bytes().map_or(spec.most, |bytes| (bytes as f64 / each) as usize);
     CloudSpec { most: spec.most.min(held), ..spec }

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use super::error::RunError;
 use super::remark::Remark;
-use super::solids::{Built, build, remembers};
+use super::solids::{Built, Filling};
 use super::structures::Described;
 use crate::case::{Case, Temporal};
 use crate::coupling::solids::{Scales, SolidBody, Solids};
@@ -35,10 +35,11 @@ pub(super) fn fill<const D: usize>(
     if case.solids().next().is_none() {
         return Ok(None);
     }
-    let built = build::<D>(case, input)?;
+    let filling = Filling::of(case, input);
+    let built = filling.build::<D>()?;
     let notes = built.notes.iter().cloned().map(Remark::Note);
     let remarks = notes.chain(built.warnings.iter().cloned().map(Remark::Warning)).collect();
-    remembers(case, &built)?;
+    filling.remembers(&built)?;
     let mut bodies = Vec::new();
     for (k, (number, _, _)) in case.solids().enumerate() {
         let body = body(&built, (k, number), first, motions);

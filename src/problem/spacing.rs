@@ -1,10 +1,8 @@
 //! Spacing of clouds: what is chosen where a case leaves it to the program, and the same cloud coarser or finer.
 //!
 //! A family of clouds is one cloud seen larger and larger: spacing, layers and what curvature asks for are scaled together.
-use std::borrow::Cow;
-
 use super::reference;
-use crate::case::{Accuracy, Case, Domain, Length, Side, Wake, WallLayers};
+use crate::case::{Accuracy, Case, Cloud, Domain, Length, Side, Sides, Wake, WallLayers};
 use crate::cloud::CloudSpec;
 use crate::cloud::layout::count;
 use crate::geometry::Surface;
@@ -74,9 +72,30 @@ pub(crate) fn asked(case: &Case) -> Option<Accuracy> {
     case.accuracy.or_else(|| chosen.then(usual))
 }
 
-/// The case with the spacing of its cloud, and with the accuracy that is asked for where it leaves that out.
-pub(crate) fn with_cloud<'a, const D: usize>(case: &'a Case, surface: Option<&Surface<D>>) -> Cow<'a, Case> {
-    let Some(surface) = surface.filter(|_| case.cloud.spacing.is_none()) else { return Cow::Borrowed(case) };
+/// The cloud that is chosen where a case leaves its spacing to the program, and the accuracy that is then asked for.
+pub(crate) struct Chosen {
+    /// The cloud.
+    pub(crate) cloud: Cloud,
+    /// The accuracy.
+    pub(crate) accuracy: Option<Accuracy>,
+}
+
+impl Chosen {
+    /// The choice for a case around `surface`; `None` where the case gives a spacing, and without bodies.
+    pub(crate) fn of<const D: usize>(case: &Case, surface: Option<&Surface<D>>) -> Option<Self> {
+        let surface = surface.filter(|_| case.cloud.spacing.is_none())?;
+        let accuracy = asked(case).or(case.accuracy);
+        Some(Self { cloud: chosen((case, case.cloud.clone()), surface, accuracy), accuracy })
+    }
+}
+
+/// The cloud of a case, of which `filled` says all but the spacing; in space the last of its family has no more particles than `accuracy`
+/// allows.
+fn chosen<const D: usize>(
+    (case, mut filled): (&Case, Cloud),
+    surface: &Surface<D>,
+    accuracy: Option<Accuracy>,
+) -> Cloud {
     let length = |body: usize| {
         let extent = surface.bounds_of(body).extent();
         let mut sides: [f64; D] = std::array::from_fn(|d| extent[d]);
@@ -85,29 +104,32 @@ pub(crate) fn with_cloud<'a, const D: usize>(case: &'a Case, surface: Option<&Su
         sides[1]
     };
     let shortest = (0..surface.bodies.len()).map(length).fold(f64::INFINITY, f64::min);
-    let mut filled = case.clone();
-    filled.accuracy = asked(case).or(case.accuracy);
     let chord = reference::chord(case, Some(surface));
     let reynolds = case.flow.reynolds_number(chord);
     let whole = case.flow.viscous_length(chord);
     // a fifth of a laminar boundary layer
     let thin = reynolds.map(|re| shortest / (ACROSS * (re * shortest / whole).sqrt()));
     let along = shortest / if D == 2 && thin.is_some() { ALONG_LAYERS } else { ALONG[D - 2] };
-    filled.cloud.far_field =
-        case.cloud.far_field.or(Some(Length(FAR_FIELD[D - 2] * surface.bounds().extent().max_abs())));
+    filled.far_field = filled.far_field.or(Some(Length(FAR_FIELD[D - 2] * surface.bounds().extent().max_abs())));
     let of_wing = D == 3 && thin.is_none() && case.flow.reference().mach <= 1.0;
-    filled.cloud.layers = case.cloud.layers.or(Some(if of_wing { LAYERS_OF_WINGS } else { LAYERS[D - 2] }));
+    filled.layers = filled.layers.or(Some(if of_wing { LAYERS_OF_WINGS } else { LAYERS[D - 2] }));
     // slow viscous flow needs no layers: what is thin is wider than the spacing
     let thin = thin.filter(|thin| *thin < along);
     let layers = thin.map(|thin| WallLayers { first: Length(thin), growth: GROWTH, count: None });
-    filled.cloud.wall_layers = case.cloud.wall_layers.or(layers);
-    let chosen = |spacing: f64| {
-        let mut filled = spaced::<D>(&filled, spacing);
+    filled.wall_layers = filled.wall_layers.or(layers);
+    let spaced = |spacing: f64| {
+        let mut cloud = spaced::<D>(&filled, &case.boundary, spacing);
         let wake = Wake { length: Length(WAKE * shortest), spacing: Length(WAKE_SPACING[D - 2] * spacing) };
-        filled.cloud.wake = filled.cloud.wake.or(thin.map(|_| wake));
-        filled
+        cloud.wake = cloud.wake.or(thin.map(|_| wake));
+        cloud
     };
-    Cow::Owned(chosen(if D == 3 { affordable(&chosen, surface, along) } else { along }))
+    if D == 2 {
+        return spaced(along);
+    }
+    // marches and balances have no family
+    let most = accuracy.filter(|_| !case.is_unsteady()).unwrap_or(Accuracy::in_dimension(D)).particles;
+    let cells = |spacing| count(&CloudSpec::of(&spaced(spacing), &case.boundary), Some(surface), &[]).ok();
+    spaced(affordable(&cells, most, along))
 }
 
 /// What forces of small motions are wanted for.
@@ -119,57 +141,53 @@ pub(crate) enum Forces {
     Table,
 }
 
-/// The case on one cloud where it leaves all of it to the program: for forces of small motions, which are surer on it than drag is.
-pub(crate) fn on_one_cloud<const D: usize>(case: Case, surface: Option<&Surface<D>>, wanted: Forces) -> Case {
-    if case.cloud.spacing.is_some() || case.accuracy.is_some() || surface.is_none() {
-        return case;
-    }
-    let mut asked = case;
-    asked.cloud.layers = asked.cloud.layers.or(Some(FEW_LAYERS));
-    asked.accuracy = Some(Accuracy { particles: SMALL_MOTION_PARTICLES[D - 2], ..Accuracy::in_dimension(D) });
-    let one = Case { accuracy: None, ..with_cloud(&asked, surface).into_owned() };
-    match surface.filter(|_| D == 2 && wanted == Forces::Table && one.cloud.wall_layers.is_none()) {
-        Some(surface) => of_section(one, surface),
-        None => one,
-    }
+/// The one cloud of a case that leaves all of it to the program: for forces of small motions, which are surer on it than drag is. `None` for
+/// other cases.
+pub(crate) fn one_cloud<const D: usize>(case: &Case, surface: Option<&Surface<D>>, wanted: Forces) -> Option<Cloud> {
+    let surface = surface.filter(|_| case.cloud.spacing.is_none() && case.accuracy.is_none())?;
+    let few = Cloud { layers: case.cloud.layers.or(Some(FEW_LAYERS)), ..case.cloud.clone() };
+    let asked = Accuracy { particles: SMALL_MOTION_PARTICLES[D - 2], ..Accuracy::in_dimension(D) };
+    let one = chosen((case, few), surface, Some(asked));
+    Some(match D == 2 && wanted == Forces::Table && one.wall_layers.is_none() {
+        true => of_section(one, &case.boundary, surface),
+        false => one,
+    })
 }
 
-/// The case of a section without layers at its walls, with a spacing that follows its thickness and with levels that follow its nose and
+/// The cloud of a section without layers at its walls, with a spacing that follows its thickness and with levels that follow its nose and
 /// its edges, as far as the particles of small motions go. Levels that the case gives stay.
-fn of_section<const D: usize>(case: Case, surface: &Surface<D>) -> Case {
+fn of_section<const D: usize>(cloud: Cloud, sides: &Sides, surface: &Surface<D>) -> Cloud {
     let usual = CloudSpec::<D>::new(1.0);
-    let along = case.cloud.spacing.map_or(0.0, |h| h.0);
+    let along = cloud.spacing.map_or(0.0, |h| h.0);
     let thickness = 2.0 * surface.volume().abs() / surface.area();
     let least = along * ALONG[D - 2] / ALONG_THIN;
-    let case = spaced::<D>(&case, (thickness / THROUGH).max(least).min(along));
-    let spacing = case.cloud.spacing.map_or(along, |h| h.0);
+    let cloud = spaced::<D>(&cloud, sides, (thickness / THROUGH).max(least).min(along));
+    let spacing = cloud.spacing.map_or(along, |h| h.0);
     let at_edges = (AT_EDGES * spacing / (along * ALONG[D - 2])).log2().ceil() as u32;
     let levels =
         |given: u32, usual: u32, most: u32| if given == usual { usual..=most.max(usual) } else { given..=given };
-    let edges = levels(case.cloud.edge_levels, usual.edge_levels, at_edges);
-    let noses = levels(case.cloud.curvature_levels, usual.curvature_levels, NOSE_LEVELS);
-    let fewer = |by: u32| {
-        let mut fewer = case.clone();
-        fewer.cloud.edge_levels = edges.end().saturating_sub(by).max(*edges.start());
-        fewer.cloud.curvature_levels = noses.end().saturating_sub(by).max(*noses.start());
-        fewer
+    let edges = levels(cloud.edge_levels, usual.edge_levels, at_edges);
+    let noses = levels(cloud.curvature_levels, usual.curvature_levels, NOSE_LEVELS);
+    let fewer = |by: u32| Cloud {
+        edge_levels: edges.end().saturating_sub(by).max(*edges.start()),
+        curvature_levels: noses.end().saturating_sub(by).max(*noses.start()),
+        ..cloud.clone()
     };
-    let fits = |case: &Case| {
-        let counted = count(&CloudSpec::of_case(case), Some(surface), &[]);
+    let fits = |cloud: &Cloud| {
+        let counted = count(&CloudSpec::of(cloud, sides), Some(surface), &[]);
         counted.is_ok_and(|cells| cells <= SMALL_MOTION_PARTICLES[D - 2])
     };
-    (0..=NOSE_LEVELS.max(at_edges)).map(fewer).find(fits).unwrap_or(case)
+    (0..=NOSE_LEVELS.max(at_edges)).map(fewer).find(fits).unwrap_or_else(|| cloud.clone())
 }
 
 /// The spacing in space, no finer than `spacing`, at which the last of the clouds that an error bar takes has no more particles than are allowed:
 /// thin edges and noses ask for more than the size of a body tells. Particles are more than cells of the background, by those on the
 /// walls.
-fn affordable<const D: usize>(chosen: &impl Fn(f64) -> Case, surface: &Surface<D>, spacing: f64) -> f64 {
-    let room = asked(&chosen(spacing)).unwrap_or(Accuracy::in_dimension(D)).particles as f64 / WITH_WALLS;
+fn affordable(cells: &impl Fn(f64) -> Option<usize>, most: usize, spacing: f64) -> f64 {
+    let room = most as f64 / WITH_WALLS;
     let (mut spacing, coarsest) = (spacing, COARSE * spacing);
     for _ in 0..ROUNDS {
-        let case = chosen(spacing);
-        let Ok(cells) = count(&CloudSpec::of_case(&case), Some(surface), &[]) else { break };
+        let Some(cells) = cells(spacing) else { break };
         let over = cells as f64 / room;
         if over <= 1.0 {
             break;
@@ -179,14 +197,13 @@ fn affordable<const D: usize>(chosen: &impl Fn(f64) -> Case, surface: &Surface<D
     spacing
 }
 
-/// The case with this spacing. A domain that it gives is widened at far sides until it holds whole cells of the coarsest cloud; where
+/// The cloud with this spacing. A domain that it gives is widened at far sides until it holds whole cells of the coarsest cloud; where
 /// two sides of an axis must stay, the spacing is one that fits between them.
-fn spaced<const D: usize>(case: &Case, spacing: f64) -> Case {
+fn spaced<const D: usize>(cloud: &Cloud, sides: &Sides, spacing: f64) -> Cloud {
     let coarsest = COARSEST[D - 2];
-    let mut case = case.clone();
-    case.cloud.spacing = Some(Length(spacing));
-    let sides = CloudSpec::<D>::of_case(&case).sides;
-    let Some(Domain { min, max }) = case.cloud.domain.as_mut() else { return case };
+    let mut cloud = Cloud { spacing: Some(Length(spacing)), ..cloud.clone() };
+    let sides = CloudSpec::<D>::of(&cloud, sides).sides;
+    let Some(Domain { min, max }) = cloud.domain.as_mut() else { return cloud };
     let lengths: [f64; D] = std::array::from_fn(|d| max[d].0 - min[d].0);
     let shortest = lengths.into_iter().fold(f64::INFINITY, f64::min);
     // the first cloud fits as often as a power of two into cells that are small beside the domain
@@ -198,7 +215,7 @@ fn spaced<const D: usize>(case: &Case, spacing: f64) -> Case {
     if let Some(first) = fixed().reduce(f64::min) {
         let fitting = (1..=MOST_CELLS).map(|n| first / f64::from(n)).find(|c| fixed().all(|length| whole(length, *c)));
         cell = fitting.unwrap_or(first);
-        case.cloud.spacing = Some(Length(cell / (coarsest * 2f64.powf(cells(cell).round().max(0.0)))));
+        cloud.spacing = Some(Length(cell / (coarsest * 2f64.powf(cells(cell).round().max(0.0)))));
     }
     for d in (0..D).filter(|d| !whole(lengths[*d], cell)) {
         let more = (lengths[d] / cell).ceil() * cell - lengths[d];
@@ -209,37 +226,37 @@ fn spaced<const D: usize>(case: &Case, spacing: f64) -> Case {
             (false, false) => {}
         }
     }
-    case
+    cloud
 }
 
-/// The case with the spacing, the particles per level and what curvature asks for scaled by `factor`: its cloud is alike, and has
-/// factor⁻ᵈ as many particles.
-pub(crate) fn scaled(case: &Case, factor: f64) -> Case {
-    let mut case = case.clone();
+/// The cloud with the spacing, the particles per level and what curvature asks for scaled by `factor`: it is alike, and has factor⁻ᵈ as many
+/// particles.
+pub(crate) fn scaled(cloud: &Cloud, factor: f64) -> Cloud {
+    let mut cloud = cloud.clone();
     if factor == 1.0 {
-        return case;
+        return cloud;
     }
     let scale = |l: &mut Length| l.0 *= factor;
-    case.cloud.spacing.iter_mut().for_each(scale);
-    case.cloud.boxes.iter_mut().for_each(|b| scale(&mut b.spacing));
-    if let Some(wake) = case.cloud.wake.as_mut() {
+    cloud.spacing.iter_mut().for_each(scale);
+    cloud.boxes.iter_mut().for_each(|b| scale(&mut b.spacing));
+    if let Some(wake) = cloud.wake.as_mut() {
         scale(&mut wake.spacing);
     }
-    if let Some(layers) = case.cloud.wall_layers.as_mut() {
+    if let Some(layers) = cloud.wall_layers.as_mut() {
         scale(&mut layers.first);
         layers.growth = (1.0 + (layers.growth - 1.0) * factor).min(STEEPEST.max(layers.growth));
     }
-    case.cloud.curvature = (case.cloud.curvature * factor).min(1.0);
-    case.cloud.layers = Some((case.cloud.particles_per_level() / factor).max(FEWEST));
-    case
+    cloud.curvature = (cloud.curvature * factor).min(1.0);
+    cloud.layers = Some((cloud.particles_per_level() / factor).max(FEWEST));
+    cloud
 }
 
-/// The case of a stage of a run whose cloud has `factor` times the spacing. Clouds of a family are alike; those that a single cloud
+/// The cloud of a stage of a run, with `factor` times the spacing of the case. Clouds of a family are alike; those that a single cloud
 /// in the plane is begun on have as many particles per level as that one ([`begins_near`]).
-pub(crate) fn of_stage(case: &Case, factor: f64) -> Case {
-    let mut alike = scaled(case, factor);
+pub(crate) fn of_stage(case: &Case, factor: f64) -> Cloud {
+    let mut alike = scaled(&case.cloud, factor);
     if begins_near(case) {
-        alike.cloud.layers = case.cloud.layers;
+        alike.layers = case.cloud.layers;
     }
     alike
 }
@@ -259,7 +276,8 @@ pub(crate) fn sizes<'a, const D: usize>(
     surface: Option<&'a Surface<D>>,
     n: usize,
 ) -> impl Fn(f64) -> f64 + 'a {
-    let cells = move |factor: f64| count(&CloudSpec::<D>::of_case(&of_stage(case, factor)), surface, &[]).ok();
+    let cells =
+        move |factor: f64| count(&CloudSpec::<D>::of(&of_stage(case, factor), &case.boundary), surface, &[]).ok();
     move |factor| {
         let over = || Some(cells(factor)? as f64 / cells(1.0)? as f64);
         let alike = || factor.powi(-(D as i32));

@@ -1,5 +1,6 @@
 //! Streams of another pressure and temperature at the same Mach number: what matched static equilibria are sought in.
-use crate::case::{Case, Density, Pressure, Structure, Temperature};
+use super::given::Given;
+use crate::case::{Density, Pressure, Structure, Temperature};
 
 /// Pressure and temperature of a stream over those of a case.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -27,8 +28,7 @@ impl StreamRatio {
 
 /// The same structure in a stream of the same Mach number. With units the stream changes; without them, it is what all is measured in,
 /// and the numbers of the structure change.
-pub(super) fn in_stream(case: &Case, ratio: StreamRatio) -> Case {
-    let mut case = case.clone();
+pub(super) fn enter_stream(Given { case, modes }: &mut Given, ratio: StreamRatio) {
     let flow = &mut case.flow;
     if flow.is_dimensional() {
         flow.pressure = flow.pressure.map(|p| Pressure(p.0 * ratio.pressure));
@@ -37,7 +37,9 @@ pub(super) fn in_stream(case: &Case, ratio: StreamRatio) -> Case {
     }
     let dimensional = flow.is_dimensional();
     case.structures.iter_mut().for_each(|s| enter(s, ratio, dimensional));
-    case
+    if !dimensional {
+        *modes = modes.in_stream(ratio);
+    }
 }
 
 /// Turns its numbers into those of a stream; what is told in units stays as it is where the stream changes with them.

@@ -5,11 +5,12 @@ use std::sync::Arc;
 use super::error::RunError;
 use super::files;
 use super::reference::chord;
-use crate::case::{Case, SolidProbe, StructureMode, StructureModel, Temporal, Units};
+use super::solids::{NaturalModes, structure as natural_structure};
+use crate::case::{Case, SolidProbe, StructureModel, Temporal, Units};
 use crate::coupling::{Attached, body_motion};
 use crate::geometry::Surface;
 use crate::math::Vector;
-use crate::motion::{ModeShape, MotionError, Motions, mode_shape};
+use crate::motion::{ModeShape, Motions, mode_shape};
 use crate::observe::structure::{CoordinateName, StructureNames};
 use crate::structure::{BodyFrame, Coordinate, ForceHistory, Structure};
 
@@ -25,9 +26,9 @@ pub(crate) struct Described {
     pub(crate) lines: Vec<String>,
 }
 
-/// The structures of a case, one after another; `motions` then hand their bodies over to them.
+/// The structures of a case, one after another, of which some move in natural `modes`; `motions` then hand their bodies over to them.
 pub(crate) fn bodies<const D: usize>(
-    case: &Case,
+    (case, modes): (&Case, &NaturalModes),
     input: &Path,
     surface: Option<&Surface<D>>,
     motions: &mut Motions<D>,
@@ -37,13 +38,15 @@ pub(crate) fn bodies<const D: usize>(
     for body in 0..case.bodies.len() {
         let Some(data) = case.structure_of(body) else { continue };
         let frame = frame(case, surface, body);
-        let structure = Structure::<D>::of_case(case, data, frame)?;
-        let read = |name: &str| files::text(input, name);
-        let shape = |mode: &StructureMode| match &mode.table {
-            Some(table) => ModeShape::new(table).ok_or_else(|| MotionError::Crowded { file: mode.name.clone() }),
-            None => mode_shape(&mode.file, &read),
+        let (structure, shapes) = match modes.of_body(case, body) {
+            Some(modes) => natural_structure::<D>(modes, &case.flow.units())?,
+            None => {
+                let read = |name: &str| files::text(input, name);
+                let shapes = data.modes.iter().map(|mode| mode_shape(&mode.file, &read));
+                (Structure::of_case(case, data, frame)?, shapes.collect::<Result<_, _>>()?)
+            }
         };
-        let shapes = data.modes.iter().map(|m| shape(m).map(Arc::new)).collect::<Result<Vec<_>, _>>()?;
+        let shapes: Vec<Arc<ModeShape<D>>> = shapes.into_iter().map(Arc::new).collect();
         // a structure of no body by name moves all
         let alone = data.body.as_ref().map(|_| body);
         shapes.iter().try_for_each(|shape| super::modes::lies_on(surface, alone, shape))?;

@@ -10,9 +10,8 @@ use super::folder;
 use super::outcome::Outcome;
 use super::resumed::continued;
 use super::session::Session;
-use crate::case::Case;
 use crate::observe::error_bars::Part;
-use crate::problem::RunError;
+use crate::problem::{Problem, RunError};
 use crate::record::summary::Summary;
 use crate::study::Monitor;
 use crate::study::error_bars::{Further, FurtherRuns};
@@ -23,24 +22,22 @@ const FOLDER: &str = "coarser";
 
 /// Solves a case as a session does, and finds the error bars that it asks for.
 pub fn solve(session: &mut Session, monitor: &mut dyn Monitor) -> Result<Outcome, RunError> {
-    let (input, out) = session.places();
-    let place = Place { input, out };
-    let further = Further { runs: &place };
-    let mut bars = |case: &Case, summary: &mut Summary, log: &mut Log<'_>| further.find(case, summary, log);
+    let (problem, place) = (session.problem().clone(), Place { out: session.folder() });
+    let further = Further { problem: &problem, runs: &place };
+    let mut bars = |summary: &mut Summary, log: &mut Log<'_>| further.find(summary, log);
     session.solve_with(Some(&mut bars), monitor)
 }
 
-/// Where the files of a case lie, and the folder of its run where it has one.
+/// The folder of a run, where it has one.
 struct Place {
-    input: PathBuf,
     out: Option<PathBuf>,
 }
 
 impl FurtherRuns for Place {
     /// From its folder where it is finished.
-    fn solve(&self, part: Part, case: &Case, monitor: &mut dyn Monitor) -> Result<Option<Value>, RunError> {
+    fn solve(&self, part: Part, problem: Problem, monitor: &mut dyn Monitor) -> Result<Option<Value>, RunError> {
         let Some(out) = self.out.as_deref() else {
-            let outcome = solve(&mut Session::open(case, &self.input)?, monitor)?;
+            let outcome = solve(&mut Session::of(problem), monitor)?;
             return Ok(summary_of(outcome, None));
         };
         let name = match part {
@@ -50,28 +47,26 @@ impl FurtherRuns for Place {
         };
         folder::make_within(out, FOLDER)?;
         let out = out.join(FOLDER).join(name);
-        let outcome = self.kept(case, &out, monitor)?;
+        let outcome = kept(problem, &out, monitor)?;
         // what is read has the same bits whether or not the run was stopped since
         Ok(summary_of(outcome, Some(&out)))
     }
 }
 
-impl Place {
-    /// Solves a case in a folder, from where it stands there.
-    fn kept(&self, case: &Case, out: &Path, monitor: &mut dyn Monitor) -> Result<Outcome, RunError> {
-        let own = folder::is_of(case, out);
-        if let Some(summary) = folder::finished(out).filter(|_| own) {
-            folder::check_files(out)?;
-            return Ok(Outcome::AlreadyFinished { summary });
-        }
-        if own && folder::has_begun(out) {
-            return solve(&mut continued(out)?, monitor);
-        }
-        if out.exists() && !own {
-            folder::set_aside(out)?;
-        }
-        solve(&mut Session::open(case, &self.input)?.keep_in(out, monitor)?, monitor)
+/// Solves a problem in a folder, from where it stands there.
+fn kept(problem: Problem, out: &Path, monitor: &mut dyn Monitor) -> Result<Outcome, RunError> {
+    let own = folder::is_of(problem.given(), out);
+    if let Some(summary) = folder::finished(out).filter(|_| own) {
+        folder::check_files(out)?;
+        return Ok(Outcome::AlreadyFinished { summary });
     }
+    if own && folder::has_begun(out) {
+        return solve(&mut continued(out)?, monitor);
+    }
+    if out.exists() && !own {
+        folder::set_aside(out)?;
+    }
+    solve(&mut Session::of(problem).keep_in(out, monitor)?, monitor)
 }
 
 /// The summary that a run left in its folder, or in memory.

@@ -3,18 +3,15 @@ mod files;
 mod kept;
 mod skin;
 mod state_space;
-mod tables;
 
 use std::path::{Path, PathBuf};
 
 use self::kept::Kept;
-use self::skin::Skin;
 use super::folder::{self, Places};
 use super::refusals;
 use crate::case::{Case, Matching};
 use crate::observe::sums;
 use crate::problem::files::text;
-use crate::problem::solids::told_of_own_modes;
 use crate::problem::{Problem, RunError};
 pub use crate::record::flutter::{
     Bars, Boundary, CaseReference, Clearance, Doubt, FlutterAt, FlutterRow, LimitCycle, MarchedCycle, Mark, MotionRow,
@@ -22,7 +19,8 @@ pub use crate::record::flutter::{
 };
 use crate::study::Monitor;
 use crate::study::flutter::{
-    BoundaryKeeper, Held, InMemory, Scales, Stored, boundary, coordinate, planned, refused_with_forces, unreadable,
+    BoundaryKeeper, Held, InMemory, Scales, Skin, Stored, boundary, coordinate, planned, refused_with_forces,
+    unreadable,
 };
 
 /// Seeks the boundary of the table `[flutter]`, into a fresh folder; `None` when the monitor says stop.
@@ -94,14 +92,14 @@ fn sought(
     let plan = planned(case)?;
     let problem = &Problem::of_case(case, input)?;
     let case = problem.given();
-    told_of_own_modes(case).iter().for_each(|told| monitor.note(told));
+    problem.modes().words().iter().for_each(|told| monitor.note(told));
     forces.map_or(Ok(()), |_| refused_with_forces(case, &plan))?;
     let stored = forces.map(read).transpose()?;
     let stored = stored.as_ref();
     let Some(out) = out else { return boundary(problem, (&plan, stored), &mut InMemory, monitor) };
     let _held = folder::create_once(case, input, out)?;
-    let kept = Kept::of(case, input, Some(out))?;
-    kept.write(Some(out))?;
+    let kept = Kept::of(case, input, out)?;
+    kept.write(out)?;
     let mut folder = Folder { out, problem, kept, draws: case.output.report, skin: None };
     let found = boundary(problem, (&plan, stored), &mut folder, monitor)?;
     if found.is_some() {
@@ -137,7 +135,7 @@ impl BoundaryKeeper for Folder<'_> {
 
     fn keep(&mut self, at: &FlutterAt) -> Result<(), RunError> {
         self.kept.add(at);
-        self.kept.write(Some(self.out))
+        self.kept.write(self.out)
     }
 
     fn so_far(&mut self, boundary: &Boundary) -> Result<(), RunError> {

@@ -11,6 +11,7 @@ use crate::observe::table::UNFINISHED;
 use crate::observe::write_atomic;
 use crate::problem::RunError;
 use crate::problem::files::plain;
+use crate::record::gaf::TABLE as MATRICES;
 use crate::report::check_reference;
 use crate::study::record::saved;
 
@@ -27,9 +28,6 @@ pub(crate) use crate::observe::table::KEPT;
 
 /// What a flutter boundary found.
 pub(crate) const BOUNDARY: &str = "flutter.json";
-
-/// The table of `alula gaf`.
-pub(crate) const MATRICES: &str = "gaf.csv";
 
 /// Where a run reads and writes.
 #[derive(Clone, Debug)]

@@ -4,13 +4,13 @@ use std::sync::Arc;
 
 use super::files::{self, Target};
 use super::journal::Journal;
-use super::{checkpoint, folder, polar_table, room};
+use super::{checkpoint, folder, room};
 use crate::case::Case;
 use crate::coupling::SolidSnapshot;
 use crate::geometry::Surface;
 use crate::observe::structure::StructureSample;
 use crate::problem::RunError;
-use crate::record::summary::Summary;
+use crate::record::summary::{Summary, write_polar};
 use crate::scheme::Work;
 use crate::study::PeriodFields;
 use crate::study::keeper::{Camera, Earlier, End, Keeper, Tables};
@@ -60,7 +60,7 @@ impl Keeper for FolderKeeper {
     }
 
     fn points(&self, polar: &PolarRecord) -> Result<(), RunError> {
-        polar_table::write(&polar.points, &self.out)
+        Ok(write_polar(&polar.points, &self.out)?)
     }
 
     fn checkpoint(&self, saved: Saved<'_>) -> Result<(), RunError> {

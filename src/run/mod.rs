@@ -4,15 +4,11 @@
 //! stage cannot rebuild from the case: its sources of refinement, the state, and where the integrator stands; a killed run goes
 //! on to the same bits.
 //!
-//! Rooms, each of which uses those before it only: `stage` and `recipe` (what is done, in which order), `look` (loads and fields
-//! of a flow), `setup` (from a case to its equations), `record` (what a run knows about itself), `found` (what it tells at its
-//! end), `files`, `watch` (one loop that drives any integrator, and those who watch it), `studies` (what is done on a cloud),
-//! `solids` (structures of particles alone),
-//! `course` (the way through the stages, and what many flows on the same clouds leave to one another), `session`; on top of it `error_bars` (further runs), [`gaf`] and [`verify`], and `refusals` (what keeps a case
-//! from being computed).
+//! `folder`, `journal`, `checkpoint` and `keeper` keep a study, `files` and `about` write what it found, `session` solves one in memory or in a
+//! folder, `error_bars` its further runs; `flutter`, `gaf`, `solids` and `inspect` are those of other studies; `refusals` tells what keeps a case
+//! from being computed.
 mod about;
 mod checkpoint;
-mod cloud_table;
 mod error_bars;
 mod files;
 pub mod flutter;
@@ -21,51 +17,39 @@ pub mod gaf;
 mod inspect;
 mod journal;
 mod keeper;
-mod measure;
 mod outcome;
-mod pilot;
-mod polar_table;
 mod refusals;
 mod resumed;
 mod room;
 mod session;
-mod shape;
 mod solids;
-mod understood;
-pub mod verify;
 
 use std::path::{Path, PathBuf};
 
 use crate::case::Case;
-use crate::cloud::Cloud;
-use crate::geometry::Surface;
-use crate::problem::{self, Problem, ProblemIn, spacing};
+use crate::problem::{self, Problem};
 use crate::report::ReportError;
-use crate::scheme::Fluid;
 
-pub use crate::problem::{Blame, RunError};
-pub use cloud_table::{CloudTable, cloud_table};
+pub use crate::problem::{Blame, BodyTable, Measures, RunError, body_table};
 pub use error_bars::solve;
 pub use folder::{Places, fresh_folder};
-pub use inspect::{CloudReport, NeighbourCount, SpacingRange, inspect};
+pub use inspect::inspect;
 pub use outcome::Outcome;
 pub use refusals::refusals;
 pub use resumed::continued;
 pub use session::Session;
-pub use shape::{BodyTable, Measures, body_table};
-pub use solids::{SolidReport, inspect_structure};
-pub use understood::{Aeroelastic, BodyBox, Understood, UnderstoodFlutter, UnderstoodGaf, UnderstoodStructure};
 
+use crate::study;
 use crate::study::flow::Origin;
 use crate::study::solids::SolidsKeeper;
-use crate::study::stage::Stage;
-use crate::study::{self, setup};
 pub use crate::study::{
-    Apart, BalanceReport, Change, Cost, FirstHarmonics, GeneralisedForce, IterationHistory, LastPeriod, Ledger,
-    LoadCrosscheck, LoadsApart, MarchTick, MarchingCheck, ModeRow, Monitor, PeriodicLoads, PeriodicRow, PolarPoint,
-    Portion, ProbeEnd, ProbeHarmonic, ProbeRow, Reclouding, ReferenceValues, Separation, Silent, Snapshot, SolidEnd,
-    SolidLedger, SolidOutcome, SolidSolution, SolidSummary, Solution, Summary, Tick, TimeLeft, TipVortex, WakePlane,
-    WallSnapshot,
+    Aeroelastic, Apart, BalanceReport, BodyBox, Change, CloudReport, CloudTable, Cost, FirstHarmonics,
+    GeneralisedForce, IterationHistory, LastPeriod, Ledger, LoadCrosscheck, LoadsApart, MarchTick, MarchingCheck,
+    ModeRow, Monitor, NeighbourCount, PeriodicLoads, PeriodicRow, PolarPoint, Portion, ProbeEnd, ProbeHarmonic,
+    ProbeRow, Reclouding, ReferenceValues, Separation, Silent, Snapshot, SolidEnd, SolidLedger, SolidOutcome,
+    SolidReport, SolidSolution, SolidSummary, Solution, SpacingRange, Summary, Tick, TimeLeft, TipVortex, Understood,
+    UnderstoodFlutter, UnderstoodGaf, UnderstoodStructure, WakePlane, WallSnapshot, build_cloud, build_solver,
+    cloud_table, inspect_structure,
 };
 
 impl From<ReportError> for RunError {
@@ -197,23 +181,4 @@ pub fn resume(out: &Path, monitor: &mut dyn Monitor) -> Result<Outcome, RunError
 /// True where the run in `out` is over.
 pub fn is_finished(out: &Path) -> bool {
     folder::finished(out).is_some()
-}
-
-/// Builds the cloud of a case without running it.
-pub fn build_cloud<const D: usize>(
-    case: &Case,
-    input: &Path,
-) -> Result<(Option<Surface<D>>, Cloud<D>, Vec<String>), RunError> {
-    let (surface, notes) = problem::surface::<D>(case, input)?;
-    let case = spacing::with_cloud(case, surface.as_ref());
-    let cloud = Cloud::build(&problem::spec(&case), surface.as_ref(), &[])?;
-    Ok((surface, cloud, notes))
-}
-
-/// Builds the equations of a case on its own cloud, and the state at the start, without running it.
-pub fn build_solver<const D: usize>(case: &Case, input: &Path) -> Result<(Fluid<D>, Vec<f64>), RunError> {
-    let problem = ProblemIn::of_case(case, input)?.without_structures();
-    let solver = setup::solver(&problem, &Stage::PLAIN, &[], None)?;
-    let start = solver.system.start();
-    Ok((solver.system, start))
 }

@@ -90,7 +90,7 @@ fn tables(case: &Case, input: &Path) -> Vec<RunError> {
 fn shapes(case: &Case, input: &Path) -> Vec<RunError> {
     let laws = case.bodies.iter().filter_map(|b| b.motion.as_ref()).chain(case.motion.as_ref().map(|m| &m.law));
     let prescribed = laws.flat_map(|law| &law.modes).map(|mode| &mode.file);
-    let elastic = case.structures.iter().flat_map(|s| &s.modes).filter(|m| m.table.is_none()).map(|mode| &mode.file);
+    let elastic = case.structures.iter().flat_map(|s| &s.modes).map(|mode| &mode.file);
     let flexible = case.gaf.iter().flat_map(|g| &g.flexible).map(|mode| &mode.file);
     let mut files: Vec<&String> = prescribed.chain(elastic).chain(flexible).collect();
     files.sort();

@@ -97,9 +97,14 @@ impl Session {
         })
     }
 
-    /// Where its files lie, and where it is kept.
-    pub(crate) fn places(&self) -> (PathBuf, Option<PathBuf>) {
-        (self.problem.input().to_path_buf(), self.out.clone())
+    /// The problem that it solves.
+    pub(crate) fn problem(&self) -> &Problem {
+        &self.problem
+    }
+
+    /// The folder that it is kept in.
+    pub(crate) fn folder(&self) -> Option<PathBuf> {
+        self.out.clone()
     }
 
     /// The case.

@@ -333,7 +333,7 @@ impl<S: HasGas<D>, const D: usize> Course<S, D> {
     fn row(&self, stage: &Stage, log: &Log<'_>) -> PolarPoint {
         let (iterations, cpu_seconds) = log.record.polar.spent(log.record.iteration, log.seconds()[0]);
         let from_rest = log.record.polar.from_rest;
-        PolarPoint { iterations, cpu_seconds, from_rest, ..PolarPoint::of(self.problem(stage).case()) }
+        PolarPoint { iterations, cpu_seconds, from_rest, ..PolarPoint::of(&self.problem(stage).case().flow) }
     }
 
     fn tell(&self, row: PolarPoint, log: &mut Log<'_>) -> Result<(), RunError> {

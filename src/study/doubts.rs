@@ -21,8 +21,7 @@ pub(crate) fn told<const D: usize>(
     largest: [f64; 2],
     solid: Option<&SolidSnapshot<'_, D>>,
 ) -> Vec<String> {
-    let on = Case { cloud: s.conditions.cloud.clone(), ..case.clone() };
-    let rough = spacing::asked(case).map_or_else(Vec::new, |_| problem::rough(&on, surface));
+    let rough = spacing::asked(case).map_or_else(Vec::new, |_| problem::rough(&s.conditions.cloud, surface));
     of_loads(case, s, largest).into_iter().chain(rough).chain(solid.and_then(of_solid)).collect()
 }
 

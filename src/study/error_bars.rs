@@ -7,15 +7,13 @@
 //! leaves out; one harmonic less tells at least that, and takes less time.
 //!
 //! The further runs begin when the run has found its flow.
-use std::path::Path;
-
 use serde_json::Value;
 
 use super::flow::{self, Origin, Way};
 use super::monitor::{Monitor, Quiet};
 use super::record::Log;
 use super::solution::Solution;
-use crate::case::{Accuracy, Case, HarmonicCount, LoadErrors, RungeKutta, Temporal};
+use crate::case::{Case, Cloud, HarmonicCount, LoadErrors, RungeKutta, Temporal};
 use crate::observe::error_bars::{ErrorBars, Measured, NOT_PERIODIC, OtherRun, Part, Window};
 use crate::problem::coarser::{COARSER, coarser};
 use crate::problem::{Problem, RunError};
@@ -41,21 +39,18 @@ const MISSED: f64 = 0.02;
 const FEWEST_STEPS: u32 = 4;
 const MOST_HARMONICS: usize = 16;
 
-/// Solves the further runs of a case.
+/// Solves the further runs of a problem.
 pub(crate) trait FurtherRuns {
-    /// The summary of the run that tells `part` of the error; `None` when told to stop.
-    fn solve(&self, part: Part, case: &Case, monitor: &mut dyn Monitor) -> Result<Option<Value>, RunError>;
+    /// The summary of the run of `problem` that tells `part` of the error; `None` when told to stop.
+    fn solve(&self, part: Part, problem: Problem, monitor: &mut dyn Monitor) -> Result<Option<Value>, RunError>;
 }
 
 /// Solves them in memory.
-struct InMemory<'a> {
-    /// Folder that file names of the case refer to.
-    input: &'a Path,
-}
+struct InMemory;
 
-impl FurtherRuns for InMemory<'_> {
-    fn solve(&self, _: Part, case: &Case, monitor: &mut dyn Monitor) -> Result<Option<Value>, RunError> {
-        let found = solved(&Problem::of_case(case, self.input)?, monitor)?;
+impl FurtherRuns for InMemory {
+    fn solve(&self, _: Part, problem: Problem, monitor: &mut dyn Monitor) -> Result<Option<Value>, RunError> {
+        let found = solved(&problem, monitor)?;
         Ok(found.and_then(|found| serde_json::to_value(&found.summary).ok()))
     }
 }
@@ -63,21 +58,24 @@ impl FurtherRuns for InMemory<'_> {
 /// Solves a problem in memory with the error bars that it asks for; `None` when told to stop.
 pub(crate) fn solved(problem: &Problem, monitor: &mut dyn Monitor) -> Result<Option<Solution>, RunError> {
     let Ok(mut flow) = flow::solve(problem, Way::of(Origin::Case), monitor)? else { return Ok(None) };
-    let place = Further { runs: &InMemory { input: problem.input() } };
-    let mut bars = |case: &Case, summary: &mut Summary, log: &mut Log<'_>| place.find(case, summary, log);
+    let further = Further { problem, runs: &InMemory };
+    let mut bars = |summary: &mut Summary, log: &mut Log<'_>| further.find(summary, log);
     Ok(flow.conclude(Some(&mut bars))?.ok())
 }
 
 /// The error bars of a run, from further ones.
 pub(crate) struct Further<'a> {
-    /// Who solves these.
+    /// The problem of the run.
+    pub(crate) problem: &'a Problem,
+    /// Who solves the others.
     pub(crate) runs: &'a dyn FurtherRuns,
 }
 
 /// Another run.
 struct Other {
     part: Part,
-    case: Case,
+    cloud: Cloud,
+    time: Temporal,
     /// Spacing, step or number of harmonics over that of the run.
     ratio: f64,
     /// Half width over the change.
@@ -98,7 +96,8 @@ enum Asked {
 
 impl Further<'_> {
     /// Finds the error bars of a run that is over; false when told to stop.
-    pub(crate) fn find(&self, case: &Case, summary: &mut Summary, log: &mut Log<'_>) -> Result<bool, RunError> {
+    pub(crate) fn find(&self, summary: &mut Summary, log: &mut Log<'_>) -> Result<bool, RunError> {
+        let case = self.problem.case();
         let Some(asked) = case.accuracy.filter(|_| case.is_unsteady()) else { return Ok(true) };
         let Some(measured) = log.measured() else { return Ok(true) };
         let parts = parts(case, asked.error);
@@ -109,7 +108,7 @@ impl Further<'_> {
             if untold.is_some() {
                 break;
             }
-            match self.asked(*part, case, (summary, &measured), log)? {
+            match self.asked(*part, (summary, &measured), log)? {
                 Asked::Stopped => return Ok(false),
                 Asked::Told(run) => runs.push(*run),
                 Asked::Silent(why) => untold = Some(why),
@@ -134,16 +133,17 @@ impl Further<'_> {
     fn asked(
         &self,
         part: Part,
-        case: &Case,
         (summary, measured): (&Summary, &Measured),
         log: &mut Log<'_>,
     ) -> Result<Asked, RunError> {
-        let other = match other(part, case, summary) {
+        let other = match other(part, self.problem.case(), summary) {
             Ok(other) => other,
             Err(why) => return Ok(Asked::Silent(why)),
         };
         log.note(&format!("error bars: the same {}", other.words));
-        match self.runs.solve(other.part, &other.case, &mut Quiet { monitor: log.monitor() }) {
+        let problem = self.problem.further(other.cloud.clone(), other.time.clone());
+        let monitor = &mut Quiet { monitor: log.monitor() };
+        match problem.and_then(|problem| self.runs.solve(part, problem, monitor)) {
             Ok(Some(found)) => Ok(told(other, &found, measured)),
             Ok(None) => Ok(Asked::Stopped),
             Err(problem) => Ok(Asked::Silent(format!("the same {} fails: {problem}", other.words))),
@@ -189,21 +189,18 @@ fn why_none((converged, missed): (bool, f64), balance: bool, measured: &Measured
 
 /// The run that tells a part of the error of `case`, or why there is none.
 fn other(part: Part, case: &Case, summary: &Summary) -> Result<Other, String> {
-    let mut alike = case.clone();
-    alike.accuracy = Some(Accuracy { error: LoadErrors::None, ..Accuracy::default() });
-    (alike.output.report, alike.output.field_interval) = (false, None);
-    alike.compare.clear();
-    match part {
+    let (mut cloud, mut time) = (case.cloud.clone(), case.time.clone());
+    let (ratio, factor, words) = match part {
         Part::Cloud => {
             let why = "no cloud with twice the spacing fits into the domain, or `[adapt]` makes another cloud of each spacing";
-            let case = coarser(&alike, COARSER).ok_or(why)?;
-            let words = "on a cloud with twice the spacing".into();
-            Ok(Other { part, case, ratio: COARSER, factor: OF_CLOUD[usize::from(summary.grid.supersonic)], words })
+            cloud = coarser(case, COARSER).ok_or(why)?;
+            let factor = OF_CLOUD[usize::from(summary.grid.supersonic)];
+            (COARSER, factor, "on a cloud with twice the spacing".to_owned())
         }
         Part::Step => {
-            let (ratio, order) = stepped(&mut alike)?;
+            let (ratio, order) = stepped(&mut time)?;
             let factor = OF_STEP / (ratio.powi(order) - 1.0).abs();
-            Ok(Other { part, case: alike, ratio, factor, words: format!("with {ratio} times the step in time") })
+            (ratio, factor, format!("with {ratio} times the step in time"))
         }
         Part::Harmonics => {
             let own = summary.periodic.harmonic_balance.as_ref().map_or(1, |b| b.harmonics);
@@ -213,20 +210,19 @@ fn other(part: Part, case: &Case, summary: &Summary) -> Result<Other, String> {
             if n > MOST_HARMONICS {
                 return Err(format!("there is no balance with more than {MOST_HARMONICS} harmonics"));
             }
-            if let Temporal::Harmonics(plan) = &mut alike.time {
-                plan.number = HarmonicCount::Fixed(n as u32);
-                plan.check = 0;
+            if let Temporal::Harmonics(plan) = &mut time {
+                (plan.number, plan.check) = (HarmonicCount::Fixed(n as u32), 0);
             }
             let words = format!("with {n} harmonic{} in place of {own}", if n == 1 { "" } else { "s" });
-            let factor = OF_HARMONICS[usize::from(n > own)];
-            Ok(Other { part, case: alike, ratio: n as f64 / own as f64, factor, words })
+            (n as f64 / own as f64, OF_HARMONICS[usize::from(n > own)], words)
         }
-    }
+    };
+    Ok(Other { part, cloud, time, ratio, factor, words })
 }
 
-/// Gives the march of a case another step in time: its length over what it was, and the order of the method.
-fn stepped(case: &mut Case) -> Result<(f64, i32), String> {
-    match &mut case.time {
+/// Turns a march into one with another step in time: its length over what it was, and the order of the method.
+fn stepped(time: &mut Temporal) -> Result<(f64, i32), String> {
+    match time {
         Temporal::Dual(plan) => {
             let order = i32::from(plan.order);
             if let Some(tolerance) = &mut plan.adaptive {
@@ -269,7 +265,7 @@ fn told(other: Other, summary: &Value, own: &Measured) -> Asked {
     let Ok(found) = serde_json::from_value::<Measured>(known) else {
         return Asked::Silent(format!("the same {words} tells no numbers"));
     };
-    let balance = matches!(other.part, Part::Harmonics) || balances(&other.case);
+    let balance = matches!(other.time, Temporal::Harmonics(_));
     let [steps, missed] = ["iterations", "unconverged_steps"].map(|key| summary[key].as_f64().unwrap_or_default());
     let converged = (summary["converged"] != Value::Bool(false), missed / steps.max(1.0));
     if let Some(why) = why_none(converged, balance, &found) {
@@ -302,7 +298,7 @@ mod tests {
     fn other_runs_have_twice_the_step() {
         let stepped = |time: &str| {
             let mut case = case(time);
-            let found = stepped(&mut case);
+            let found = stepped(&mut case.time);
             found.map(|found| (found, case.time))
         };
         let ((ratio, order), Temporal::Dual(plan)) =

@@ -13,6 +13,7 @@ pub(crate) mod marched;
 mod scales;
 mod search;
 mod shapes;
+mod skin;
 mod state_space;
 mod stored;
 mod trim;
@@ -25,7 +26,7 @@ use self::limit_cycles::Seek;
 pub(crate) use self::limit_cycles::coordinate;
 pub(crate) use self::scales::Scales;
 use self::search::Search;
-pub(crate) use self::shapes::{amplitudes, moves};
+pub(crate) use self::skin::{Moving, Skin};
 pub(crate) use self::stored::{Stored, unreadable};
 use super::cost;
 use super::flow::{self, Flow};
@@ -343,7 +344,7 @@ impl Place<'_> {
             let outer = part(if ratio == COARSER { 1 } else { 2 }, shocks);
             match self.on_coarser(at, ratio, &mut Within { outer, monitor: &mut *monitor })? {
                 Asked::Stopped => return Ok(false),
-                Asked::Told(coarse) => others.push((refinement(self.problem.given(), ratio), *coarse)),
+                Asked::Told(coarse) => others.push((refinement(&self.problem.given().cloud, ratio), *coarse)),
                 Asked::Silent => {}
             }
         }

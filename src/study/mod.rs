@@ -16,8 +16,10 @@
 //! fields of a flow), `record` (what a study knows about itself), `found` (what it tells at its end), `setup` (from a problem to its
 //! equations on a cloud), `keeper` (what is handed over on the way), `watch` (the loop that drives any integrator, and those who watch it),
 //! `studies` (what is done on one cloud), `course` and `flow` (the way through the stages), `solids` (structures of particles alone),
-//! `flutter`, `gaf`.
+//! `flutter`, `gaf`; beside them `inspect` (what is known of a problem before it is solved) and `cloud_table`.
 pub(crate) mod accuracy;
+mod build;
+mod cloud_table;
 pub(crate) mod cost;
 mod course;
 pub(crate) mod disk;
@@ -28,6 +30,7 @@ pub(crate) mod flutter;
 pub(crate) mod found;
 pub mod gaf;
 mod generalised_forces;
+pub(crate) mod inspect;
 pub(crate) mod keeper;
 pub(crate) mod look;
 pub(crate) mod monitor;
@@ -50,8 +53,14 @@ pub use crate::record::summary::{
     MarchingCheck, PeriodicLoads, PolarPoint, ProbeEnd, Reclouding, ReferenceValues, Separation, SolidEnd, Summary,
     TipVortex, WakePlane,
 };
+pub use build::{build_cloud, build_solver};
+pub use cloud_table::{CloudTable, cloud_table};
 pub use cost::Cost;
 pub use generalised_forces::{GeneralisedForces, forces};
+pub use inspect::{
+    Aeroelastic, BodyBox, CloudReport, NeighbourCount, SolidReport, SpacingRange, Understood, UnderstoodFlutter,
+    UnderstoodGaf, UnderstoodStructure, inspect_structure,
+};
 pub use look::{Snapshot, WallSnapshot};
 pub use monitor::{MarchTick, Monitor, Silent, Tick};
 pub use record::IterationHistory;

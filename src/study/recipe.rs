@@ -51,7 +51,7 @@ fn starts(case: &Case, (n, sizes): (usize, &dyn Fn(f64) -> f64), dimension: usiz
         true => (0..NEAR_STARTS).take_while(|k| sizes(2f64.powi(*k)) > NEAR_START).count(),
         false => START[dimension - 2].iter().filter(|most| n > **most).count(),
     };
-    (1..=coarser as i32).rev().map(|k| 2f64.powi(k)).filter(|f| divides(case, *f)).collect()
+    (1..=coarser as i32).rev().map(|k| 2f64.powi(k)).filter(|f| divides(&case.cloud, *f)).collect()
 }
 
 /// The stages of a harmonic balance that begins on coarser clouds with these factors on their spacing, where it can: the steady flow and

@@ -253,6 +253,7 @@ impl fmt::Display for ClaimError {
 
 #[cfg(test)]
 mod tests {
+    use super::super::metric::{ComparisonMetric, FieldMetric};
     use super::*;
     use proptest::prelude::*;
     use toml::Table;
@@ -311,11 +312,11 @@ mod tests {
                 if let Some(curve) = &claim.file {
                     let table = crate::verify::Table::parse(&read(curve)).unwrap();
                     let columns: &[&str] = match claim.metric {
-                        Metric::LiftLoopDifference => &["phase", "CL"],
-                        Metric::DragLoopDifference => &["phase", "CD"],
-                        Metric::SectionCpRms => &["y", "x_c", "Cp"],
-                        m if m.needs_cases() => &["exact"],
-                        m if m.is_of_forces() => &["k", "re", "im"],
+                        Metric::Comparison(ComparisonMetric::LiftLoopDifference) => &["phase", "CL"],
+                        Metric::Comparison(ComparisonMetric::DragLoopDifference) => &["phase", "CD"],
+                        Metric::Field(FieldMetric::SectionCpRms) => &["y", "x_c", "Cp"],
+                        Metric::Bar(_) => &["exact"],
+                        Metric::Force(_) => &["k", "re", "im"],
                         _ => &["x_c", "Cp"],
                     };
                     let upper = table.only("surface", "upper");

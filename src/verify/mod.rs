@@ -4,7 +4,7 @@
 //! [`claim`] reads the claims and judges values, [`metric`] names what they measure, [`metrics`] turns samples into values, [`curve`] reads reference tables, [`loops`] compares
 //! periods, [`truth`] finds exact
 //! solutions by name, [`wall`] holds the wall of a result, [`calibration`] holds error bars against exact loads.
-//! It opens no file and runs nothing; `run::verify` does both.
+//! It opens no file and runs nothing; `verification` does both.
 pub mod calibration;
 pub mod claim;
 pub mod curve;

@@ -30,7 +30,7 @@ impl ClaimFile {
         if list.is_empty() {
             problems.push("file has no claim\nhint: add a `[[claim]]` table".into());
         }
-        if let (None, Some(claim)) = (&study, claims.iter().find(|c| c.metric.needs_study())) {
+        if let (None, Some(claim)) = (&study, claims.iter().find(|c| matches!(c.metric, Metric::Study(_)))) {
             let name = claim.metric.name();
             problems.push(format!("metric `{name}` needs several spacings\nhint: add `[study]` with `spacings`"));
         }

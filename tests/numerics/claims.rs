@@ -2,8 +2,8 @@
 use std::fs;
 use std::path::Path;
 
-use alula::run::verify::{Keep, Selection, Walk, WalkError, times};
 use alula::run::{Monitor, Silent, Tick};
+use alula::verification::{Keep, Selection, Walk, WalkError, times};
 use alula::verify::ClaimRow;
 
 const CASE: &str = "title = \"still\"\ndimension = 2\n[flow]\nmach = 0.5\n[cloud]\nspacing = 0.25\n\

@@ -2,7 +2,7 @@
 use std::path::Path;
 
 use alula::run::Silent;
-use alula::run::verify::{Selection, Walk};
+use alula::verification::{Selection, Walk};
 use alula::verify::ClaimRow;
 
 /// Processor seconds of the cases that are judged here; `alula verify --fast` judges more.

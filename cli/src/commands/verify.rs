@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use alula::report::write_verification_page;
 use alula::run::Monitor;
-use alula::run::verify::{
+use alula::verification::{
     Folder, Keep, QUICK, Selection, Spent, TimeTaken, Walk, WalkError, build_of_this_program, find, times,
 };
 use alula::verify::{Claim, ClaimRow};

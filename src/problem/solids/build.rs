@@ -8,7 +8,7 @@ use super::material::material;
 use super::probes::probes;
 use super::size::{Wanted, fit};
 use crate::case::formula::Formula;
-use crate::case::{Case, Domain, PlaneState, SolidPlace, Temporal};
+use crate::case::{Body, Case, Domain, PlaneState, Solid as Data, SolidPlace, Temporal};
 use crate::geometry::load_surface;
 use crate::math::Vector;
 use crate::physics::solid::{Law, Material};
@@ -42,14 +42,76 @@ pub(crate) struct Built<const D: usize> {
     pub(crate) warnings: Vec<String>,
 }
 
-/// The structure of a case whose bodies are made of particles.
-pub(crate) fn build<const D: usize>(case: &Case, input: &Path) -> Result<Built<D>, RunError> {
+/// Which bodies of a case are filled with particles, and how.
+#[derive(Clone, Copy)]
+pub(crate) struct Filling<'a> {
+    case: &'a Case,
+    /// Folder that file names of the case refer to.
+    input: &'a Path,
+    /// The only body that is filled; all without it.
+    only: Option<usize>,
+    /// True for states that last whatever the case computes with them.
+    at_rest: bool,
+    /// Factor on the distance of particles.
+    factor: f64,
+}
+
+impl<'a> Filling<'a> {
+    /// All bodies of a case, whose files lie in `input`.
+    pub(crate) fn of(case: &'a Case, input: &'a Path) -> Self {
+        Self { case, input, only: None, at_rest: false, factor: 1.0 }
+    }
+
+    /// One body alone, for states that last.
+    pub(super) fn of_body_at_rest(self, body: usize) -> Self {
+        Self { only: Some(body), at_rest: true, ..self }
+    }
+
+    /// The same with `factor` times the distance of particles.
+    pub(crate) fn coarser(self, factor: f64) -> Self {
+        Self { factor: factor * self.factor, ..self }
+    }
+
+    /// The bodies that are filled, with their numbers.
+    fn bodies(&self) -> Vec<(usize, &'a Body, &'a Data)> {
+        match self.only {
+            Some(only) => self.case.bodies_of_particles().filter(|(k, ..)| *k == only).collect(),
+            None => self.case.solids().collect(),
+        }
+    }
+
+    /// Fills the bodies.
+    pub(crate) fn build<const D: usize>(&self) -> Result<Built<D>, RunError> {
+        build(self)
+    }
+
+    /// True for steady and periodic states in a gas: they last, and metals that bear them do not yield.
+    fn lasts(&self) -> bool {
+        let marches = matches!(self.case.time, Temporal::Explicit(_) | Temporal::Dual(_));
+        self.case.has_gas() && (self.at_rest || !marches)
+    }
+
+    /// Refuses materials that remember where a gas leaves no steps to remember.
+    pub(crate) fn remembers<const D: usize>(&self, built: &Built<D>) -> Result<(), RunError> {
+        if !self.lasts() || !built.structure.solid.remembers() {
+            return Ok(());
+        }
+        Err(RunError::Solid {
+            what: "a material that remembers (viscoelastic, hypoelastic) has no steady and no periodic state by itself: in a gas it marches in time".into(),
+            hint: "use `[time.dual]` or `[time.explicit]`, or an elastic law: `linear`, `saint_venant_kirchhoff`, `neo_hookean`".into(),
+        })
+    }
+}
+
+/// The structure of bodies made of particles.
+fn build<const D: usize>(filling: &Filling<'_>) -> Result<Built<D>, RunError> {
+    let case = filling.case;
     let (mut notes, mut warnings) = (Vec::new(), Vec::new());
-    let parts = parts::<D>(case, input, &mut notes, &mut warnings)?;
+    let parts = parts::<D>(filling, &mut notes, &mut warnings)?;
     let owner: Vec<u16> = parts.iter().zip(0..).flat_map(|(p, k)| std::iter::repeat_n(k, p.fill.x.len())).collect();
     let particles = particles_of(&parts, &mut notes)?;
     let (mut materials, of) = materials(&parts, &particles, &owner)?;
-    if lasts(case) {
+    if filling.lasts() {
         materials.iter_mut().for_each(|m| *m = m.as_elastic());
         notes.extend(materials.iter().filter_map(|m| m.elastic_limit).map(|limit| {
             format!(
@@ -103,18 +165,18 @@ pub(crate) fn build<const D: usize>(case: &Case, input: &Path) -> Result<Built<D
 
 /// The bodies of a case with the particles that fill them.
 fn parts<'a, const D: usize>(
-    case: &'a Case,
-    input: &Path,
+    filling: &Filling<'a>,
     notes: &mut Vec<String>,
     warnings: &mut Vec<String>,
 ) -> Result<Vec<Part<'a, D>>, RunError> {
+    let Filling { case, input, factor, .. } = *filling;
     let mut plans = Vec::new();
-    for (number, body, data) in case.solids() {
+    for (number, body, data) in filling.bodies() {
         let name = body.name.clone().unwrap_or_else(|| format!("body {}", number + 1));
         let (surface, said) = load_surface::<D>(std::slice::from_ref(body), input)?;
         notes.extend(said);
         let cuts = cuts(case, &surface.bounds());
-        let mut plan = Plan::new((body, data), name, surface, cuts)?;
+        let mut plan = Plan::new((body, data, factor), name, surface, cuts)?;
         // without supports a body with a prescribed motion is led as a whole
         plan.led = case.motion_of(number).is_some() && data.supports.is_empty();
         plans.push(plan);
@@ -180,11 +242,6 @@ fn contact<const D: usize>(case: &Case) -> Option<Contact<D>> {
         normal: vector(&plane.normal).unit(),
     });
     Some(Contact { planes: planes.collect(), bodies: data.bodies, stiffness: data.stiffness, friction: data.friction })
-}
-
-/// True for steady and periodic states in a gas: they last, and metals that bear them do not yield.
-fn lasts(case: &Case) -> bool {
-    case.has_gas() && !matches!(case.time, Temporal::Explicit(_) | Temporal::Dual(_))
 }
 
 /// Materials of all bodies and regions, and which of them each particle has.
@@ -360,15 +417,4 @@ fn velocities<const D: usize>(parts: &[Part<'_, D>], particles: &Particles<D>, o
         std::array::from_fn(|d| own.get(d).map_or(0.0, |f| f.value_at(&particles.x[i].0, 0.0, 0.0)))
     };
     (0..particles.len()).map(of).collect()
-}
-
-/// Refuses materials that remember where a gas leaves no steps to remember.
-pub(crate) fn remembers<const D: usize>(case: &Case, built: &Built<D>) -> Result<(), RunError> {
-    if !lasts(case) || !built.structure.solid.remembers() {
-        return Ok(());
-    }
-    Err(RunError::Solid {
-        what: "a material that remembers (viscoelastic, hypoelastic) has no steady and no periodic state by itself: in a gas it marches in time".into(),
-        hint: "use `[time.dual]` or `[time.explicit]`, or an elastic law: `linear`, `saint_venant_kirchhoff`, `neo_hookean`".into(),
-    })
 }

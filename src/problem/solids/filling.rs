@@ -43,9 +43,10 @@ pub(super) struct Part<'a, const D: usize> {
 }
 
 impl<'a, const D: usize> Plan<'a, D> {
-    /// How the body `body`, called `name`, is filled. Refuses what no particles can fill, or tell apart.
+    /// How the body `body`, called `name`, is filled, with `factor` times the distance of particles. Refuses what no particles can fill, or
+    /// tell apart.
     pub(super) fn new(
-        (body, data): (&Body, &'a Data),
+        (body, data, factor): (&Body, &'a Data, f64),
         name: String,
         surface: Surface<D>,
         cuts: Vec<Cut>,
@@ -68,8 +69,9 @@ impl<'a, const D: usize> Plan<'a, D> {
             None => None,
         };
         let shortest = shortest(&surface, rows.as_deref());
-        let through = |count: u32| shortest / f64::from(count - 1);
-        let spacing = data.spacing.map(|s| s.0).or(data.through.map(through)).unwrap_or(shortest / (USUAL - 1.0));
+        let through = |count: f64| shortest / ((count - 1.0) / factor).round();
+        let given = data.spacing.map(|s| factor * s.0).or(data.through.map(|count| through(f64::from(count))));
+        let spacing = given.unwrap_or_else(|| through(USUAL));
         near((&name, body), &surface, spacing)?;
         Ok(Self { data, name, surface, cuts, led: false, spacing, rows })
     }

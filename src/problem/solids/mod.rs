@@ -9,8 +9,10 @@ mod probes;
 mod size;
 mod spline_modes;
 
-pub(crate) use build::{Built, build, remembers};
-pub(crate) use own_modes::{told_of_own_modes, with_own_modes};
+pub(crate) use build::{Built, Filling};
+pub(in crate::problem) use natural::structure;
+pub(crate) use natural::{NaturalMode, NaturalModes};
+pub(crate) use own_modes::own_modes;
 
 use super::error::RunError;
 use crate::case::{Case, PlaneState, Temporal};

@@ -110,7 +110,7 @@ mod tests {
     /// The number of particles expected over those that there are.
     fn expected<const D: usize>(shape: &str, solid: &str, expected: impl Fn(&Case) -> f64) -> f64 {
         let case = case(shape, solid);
-        let built = super::super::build::<D>(&case, std::path::Path::new(".")).unwrap();
+        let built = super::super::Filling::of(&case, std::path::Path::new(".")).build::<D>().unwrap();
         expected(&case) / built.structure.solid.len() as f64
     }
 

@@ -4,9 +4,9 @@ use std::path::Path;
 use super::super::error::RunError;
 use super::cut::cuts;
 use super::material::material;
-use super::natural::Natural;
+use super::natural::{Found, NaturalMode};
 use crate::case::formula::Formula;
-use crate::case::{Case, ModeTable, Solid, SolidPlace, SolidSupport, StructureMode};
+use crate::case::{Case, ModeTable, Solid, SolidPlace, SolidSupport};
 use crate::geometry::{Surface, load_surface};
 use crate::math::Vector;
 use crate::physics::solid::Material;
@@ -18,12 +18,7 @@ const POINTS: usize = 800;
 const LEAK: f64 = 1e-2;
 
 /// The lowest `count` modes of body number `body`.
-pub(super) fn spline_modes(
-    case: &Case,
-    input: &Path,
-    body: usize,
-    count: usize,
-) -> Result<Vec<StructureMode>, RunError> {
+pub(super) fn spline_modes(case: &Case, input: &Path, body: usize, count: usize) -> Result<Vec<NaturalMode>, RunError> {
     let data = &case.bodies[body];
     let Some(solid) = &data.solid else { return Ok(Vec::new()) };
     let name = data.name.clone().unwrap_or_else(|| format!("body {}", body + 1));
@@ -46,7 +41,7 @@ pub(super) fn spline_modes(
     let mut found = modes(&of, count).map_err(|e| refused(&e, &name, &surface))?;
     leaks(&found, &surface, &mirrors, &name)?;
     let points = splines::spread(&of, POINTS);
-    Ok((0..found.modes.len()).map(|k| natural(&mut found, k, solid, &points).into_mode(k)).collect())
+    Ok((0..found.modes.len()).map(|k| natural(&mut found, k, solid, &points).into()).collect())
 }
 
 /// The material of the body and those of its regions.
@@ -107,7 +102,7 @@ fn leaks(found: &SplineModes, surface: &Surface<3>, mirrors: &[Mirror], name: &s
 }
 
 /// Mode number `k`, so that its greatest displacement is 1.
-fn natural(found: &mut SplineModes, k: usize, solid: &Solid, points: &[Vector<3>]) -> Natural {
+fn natural(found: &mut SplineModes, k: usize, solid: &Solid, points: &[Vector<3>]) -> Found {
     let shape = |found: &SplineModes| points.iter().map(|x| found.displacement(k, x)).collect::<Vec<_>>();
     let largest = |m: f64, u: &Vector<3>| u.0.iter().fold(m, |m, x| if x.abs() > m.abs() { *x } else { m });
     let greatest = shape(found).iter().fold(0.0, largest);
@@ -116,7 +111,7 @@ fn natural(found: &mut SplineModes, k: usize, solid: &Solid, points: &[Vector<3>
     let moved = |x: &Vector<3>| Vector::from_fn(|d| velocity.get(d).map_or(0.0, |f| f.value_at(&x.0, 0.0, 0.0)));
     let gravity = Vector::from_fn(|d| solid.gravity.get(d).map_or(0.0, |g| g.0));
     let mode = &found.modes[k];
-    Natural {
+    Found {
         omega: mode.omega,
         mass: mode.generalised_mass,
         weight: if gravity == Vector::ZERO { 0.0 } else { found.along(k, |_| gravity) },

@@ -2,22 +2,19 @@
 //!
 //! The Mach number is shown in the plane of symmetry, or in the middle of the bodies where there is none; the axial vorticity and the
 //! flow across the stream in a plane behind bodies that lift. Lines there follow v and w less those of the free stream.
-use super::raster::{MARGIN, Plane, sampled};
 use super::target::Scene;
 use crate::geometry::Surface;
+use crate::math::Vector;
 use crate::math::parallel::sweep_each_chunk;
 use crate::math::slice::slice;
-use crate::math::{Bounds, Vector};
 use crate::physics::Primitive;
 use crate::problem::RunError;
 use crate::report::{Colormap, PictureStyle, Raster, raster_png, write_file, write_stations, write_surface_views};
 use crate::scheme::probe::{Near, Probe};
 use crate::scheme::start::free_stream;
 use crate::study::keeper::together;
+use crate::study::look::raster::{MIDDLE_PIXELS, Plane, middle_window, sampled};
 use crate::study::look::{CrossPlane, side_of_symmetry};
-
-/// Pixels along the longer side: particles in space are farther apart than in the plane, and each pixel asks more of them.
-pub(super) const PIXELS: usize = 480;
 
 /// Draws all pictures of a run in space.
 pub(super) fn write<const D: usize>(scene: &Scene<'_, D>) -> Result<(), RunError> {
@@ -30,15 +27,6 @@ pub(super) fn write<const D: usize>(scene: &Scene<'_, D>) -> Result<(), RunError
     })
 }
 
-/// The part of the plane x, z that pictures of the middle show.
-pub(super) fn window<const D: usize>(surface: &Surface<D>, domain: &Bounds<D>) -> Bounds<2> {
-    let b = surface.bounds();
-    let margin = MARGIN * b.extent()[0].max(b.extent()[D - 1]);
-    let cut = |d: usize| [(b.min[d] - margin).max(domain.min[d]), (b.max[d] + margin).min(domain.max[d])];
-    let [x, z] = [cut(0), cut(D - 1)];
-    Bounds { min: Vector([x[0], z[0]]), max: Vector([x[1], z[1]]) }
-}
-
 /// Mach number in the plane of symmetry or in the middle.
 fn middle<const D: usize>(scene: &Scene<'_, D>, surface: &Surface<D>) -> Result<(), RunError> {
     let (domain, b) = (scene.view.cloud().tree.bounds(), surface.bounds());
@@ -47,8 +35,8 @@ fn middle<const D: usize>(scene: &Scene<'_, D>, surface: &Surface<D>) -> Result<
         None => (b.centre()[1], format!("at y = {:.3}, the middle of the span", b.centre()[1])),
     };
     let plane = Plane { axes: [0, D - 1], through: Vector::axis(1) * at };
-    let (w, gas) = (window(surface, &domain), scene.view.fluid.gas);
-    let (width, height, states) = sampled(scene, &plane, &w, PIXELS);
+    let (w, gas) = (middle_window(surface, &domain), scene.view.fluid.gas);
+    let (width, height, states) = sampled((scene.view, scene.surface), &plane, &w, MIDDLE_PIXELS);
     let mach = |q: &Primitive<D>| q.velocity.norm() / gas.sound_speed(q);
     let values = states.iter().map(|q| q.as_ref().map_or(f64::NAN, mach)).collect();
     let title = format!("Mach number {told}");
@@ -79,7 +67,7 @@ fn wake<const D: usize>(scene: &Scene<'_, D>, surface: &Surface<D>) -> Result<()
     let free = free_stream::<D>(scene.to.case);
     let plane = Plane { axes: [1, D - 1], through: behind.place(0.0, 0.0) };
     let w = behind.window;
-    let (width, height, states) = sampled(scene, &plane, &w, PIXELS);
+    let (width, height, states) = sampled((scene.view, scene.surface), &plane, &w, MIDDLE_PIXELS);
     let pixel = w.extent()[0] / width as f64;
     let per = scene.chord / free.velocity.norm();
     let probe = Probe::new(scene.view, scene.surface);

@@ -2,7 +2,6 @@
 mod cuts;
 mod period;
 mod pictures;
-mod raster;
 mod solids;
 mod state;
 mod strips;
@@ -31,7 +30,7 @@ use crate::study::record::trace::Trace;
 use crate::study::record::{Log, passed};
 
 pub(crate) use period::write_period;
-pub(crate) use pictures::{pixels, write_cloud};
+pub(crate) use pictures::write_cloud;
 pub(crate) use solids::{draw_solid, write_solid};
 pub(crate) use state::write_state_script;
 pub(crate) use target::{Scene, Target};

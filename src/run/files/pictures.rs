@@ -1,8 +1,6 @@
 //! Pictures of a run, drawn through the solver's own fit.
 use super::cuts;
-use super::raster::{MARGIN, Plane, sampled};
 use super::target::Scene;
-use crate::geometry::Surface;
 use crate::math::{Bounds, Vector};
 use crate::physics::Primitive;
 use crate::problem::RunError;
@@ -12,9 +10,8 @@ use crate::report::{
 use crate::scheme::start::free_stream;
 use crate::study::keeper::{FILM, together};
 use crate::study::look::pressure_coefficient;
+use crate::study::look::raster::{MARGIN, PIXELS, Plane, around, sampled};
 
-/// Pixels along the longer side of a flow picture.
-const PIXELS: usize = 900;
 /// Pixels along the longer side of a picture of a film strip.
 const FILM_PIXELS: usize = 450;
 /// Greatest Mach number in the colours of a film strip, in that of the free stream.
@@ -34,25 +31,6 @@ pub(crate) fn write<const D: usize>(scene: &Scene<'_, D>) -> Result<(), RunError
 
 fn window<const D: usize>(scene: &Scene<'_, D>, margin: f64) -> Bounds<2> {
     around(scene.surface, &scene.view.cloud().tree.bounds(), margin)
-}
-
-/// What a picture shows: the bodies with a margin in body lengths around them, or all of the domain.
-fn around<const D: usize>(surface: Option<&Surface<D>>, all: &Bounds<D>, margin: f64) -> Bounds<2> {
-    let b = surface.map_or(*all, |s| s.bounds().padded(margin * s.bounds().extent().max_abs()));
-    let pick = |v: Vector<D>| Vector([v[0], v[1]]);
-    Bounds { min: pick(b.min.max(&all.min)), max: pick(b.max.min(&all.max)) }
-}
-
-/// Pixels of a picture of the flow.
-pub(crate) fn pixels<const D: usize>(surface: Option<&Surface<D>>, domain: &Bounds<D>) -> f64 {
-    let of = |window: Bounds<2>, along: usize| {
-        let extent = window.extent();
-        (along * along) as f64 * extent[0].min(extent[1]) / extent[0].max(extent[1])
-    };
-    match D {
-        2 => of(around(surface, domain, MARGIN), PIXELS),
-        _ => surface.map_or(0.0, |surface| of(cuts::window(surface, domain), cuts::PIXELS)),
-    }
 }
 
 fn outlines<const D: usize>(scene: &Scene<'_, D>) -> Vec<Vec<Vector<2>>> {
@@ -88,7 +66,7 @@ fn plane<const D: usize>(scene: &Scene<'_, D>) -> Result<(), RunError> {
     let mach = |q: &Primitive<D>| q.velocity.norm() / gas.sound_speed(q);
     let cp = |q: &Primitive<D>| pressure_coefficient(q, &free);
     let density = |q: &Primitive<D>| q.density;
-    let states = sampled(scene, &Plane::of_motion(), &w, PIXELS);
+    let states = sampled((scene.view, scene.surface), &Plane::of_motion(), &w, PIXELS);
     let style = |title: &'static str, quantity: &'static str, map: Colormap, contours: &'static [f64]| {
         (title, quantity, map, contours)
     };
@@ -120,7 +98,7 @@ fn plane<const D: usize>(scene: &Scene<'_, D>) -> Result<(), RunError> {
 /// Draws the Mach number at part `part` of a period, in colours that are the same for all of them.
 pub(crate) fn write_film<const D: usize>(scene: &Scene<'_, D>, part: u32) -> Result<(), RunError> {
     let (window, gas) = (window(scene, MARGIN), scene.view.fluid.gas);
-    let (width, height, states) = sampled(scene, &Plane::of_motion(), &window, FILM_PIXELS);
+    let (width, height, states) = sampled((scene.view, scene.surface), &Plane::of_motion(), &window, FILM_PIXELS);
     let mach = |q: &Primitive<D>| q.velocity.norm() / gas.sound_speed(q);
     let values = states.iter().map(|q| q.as_ref().map_or(f64::NAN, mach)).collect();
     let title = format!("Mach number after {part}/{FILM} of the period");

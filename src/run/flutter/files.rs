@@ -3,15 +3,15 @@ use std::path::Path;
 
 use super::super::files::write_state_script;
 use super::super::folder::BOUNDARY;
-use super::skin::Skin;
 use super::state_space;
-use super::tables::{describe_tables, write_tables};
 use crate::observe::About;
 use crate::observe::columns::Scale;
 use crate::observe::table::write_json;
 use crate::problem::RunError;
+use crate::record::flutter::tables::{describe_tables, write_tables};
 use crate::record::flutter::{Boundary, FlutterAt, FlutterRow};
 use crate::report;
+use crate::study::flutter::Skin;
 
 /// The surface that moves, for the page.
 const MODES: &str = "modes.json";

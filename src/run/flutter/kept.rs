@@ -36,14 +36,12 @@ struct Finished {
 }
 
 impl Kept {
-    /// What `out` has of `case`, whose files lie in `input`; nothing where it has none, or that of another case or version, or is no folder. Refuses what
+    /// What `out` has of `case`, whose files lie in `input`; nothing where it has none, or that of another case or version. Refuses what
     /// was changed since a run wrote it.
-    pub(super) fn of(case: &Case, input: &Path, out: Option<&Path>) -> Result<Self, RunError> {
+    pub(super) fn of(case: &Case, input: &Path, out: &Path) -> Result<Self, RunError> {
         let key = folder::identity(case, input);
         let none = |key| Self { key, crc32: 0, finished: Vec::new() };
-        let Some((out, text)) = out.and_then(|out| Some((out, files::text(out, KEPT).ok()?))) else {
-            return Ok(none(key));
-        };
+        let Ok(text) = files::text(out, KEPT) else { return Ok(none(key)) };
         let tree = serde_json::from_str::<serde_json::Value>(&text).unwrap_or_default();
         if tree.get("key").and_then(serde_json::Value::as_str).is_some_and(|other| other != key) {
             return Ok(none(key));
@@ -88,10 +86,9 @@ impl Kept {
         });
     }
 
-    /// Writes all of it into `out`, where there is a folder.
-    pub(super) fn write(&self, out: Option<&Path>) -> Result<(), RunError> {
-        let whole = || Self { crc32: self.checksum(), ..self.clone() };
-        out.map_or(Ok(()), |out| Ok(write_json(&out.join(KEPT), &whole())?))
+    /// Writes all of it into `out`.
+    pub(super) fn write(&self, out: &Path) -> Result<(), RunError> {
+        Ok(write_json(&out.join(KEPT), &Self { crc32: self.checksum(), ..self.clone() })?)
     }
 }
 
@@ -124,7 +121,7 @@ mod tests {
             let text = format!("[flow]\nmach = {mach}\n[[body]]\nnaca = \"0012\"\n[cloud]\nspacing = 0.1\n");
             crate::case::read(&text, "case.toml").unwrap()
         };
-        let (input, out) = (Path::new(""), Some(folder.path()));
+        let (input, out) = (Path::new(""), folder.path());
         let at = FlutterAt {
             mach: 0.7,
             still: vec![0.1 + 0.2, 1.0 / 3.0],

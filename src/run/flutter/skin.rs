@@ -1,47 +1,24 @@
-//! The surface of the bodies, and how far each coordinate takes its points: what draws a motion.
-//!
-//! A point goes from X to X + Re(d e^{iωt}) with d = Σ q̂_k ∂x/∂q_k, the tangents of its place where the bodies are as placed; for motions of any
-//! size that is a picture of small ones, drawn large. Where the gas was solved, files for ParaView show wall particles in its place, with the
-//! unsteady pressure that belongs to the displacement drawn (`wall_motion`).
-use std::collections::BTreeMap;
+//! Files of motions: what the page reads, and series for ParaView.
 use std::path::Path;
 
 use num_complex::Complex64;
 use serde::Serialize;
 
 use super::super::folder::make_within;
-use crate::math::Vector;
-use crate::math::rotation::cross;
 use crate::observe::vtk::{About, Column, Facets, write_collection, write_surface};
 use crate::observe::write_atomic;
-use crate::problem::reference::chord;
-use crate::problem::{Problem, ProblemIn, RunError};
-use crate::record::flutter::{FlutterRow, Share, WallMotion};
-use crate::study::flutter::{amplitudes, moves};
+use crate::problem::RunError;
+use crate::record::flutter::FlutterRow;
+use crate::study::flutter::{Moving, Skin};
 
-/// Largest displacement that is drawn, over the chord.
-const SHOWN: f64 = 0.1;
 /// Phases of a period in files.
 const PHASES: usize = 16;
 /// Triangles on the page, at most.
 const MOST: usize = 5000;
-/// Factor by which the cells in which corners become one grow until few enough triangles are left.
-const COARSER: f64 = 1.3;
 /// Part of the chord that places are rounded to on the page.
 const ROUNDED: f64 = 1e-5;
 /// Folder of the files of a series.
 const FOLDER: &str = "modes";
-
-/// The surface at rest, and its displacement per unit of each coordinate.
-#[derive(Clone, Debug, Default)]
-pub(super) struct Skin {
-    chord: f64,
-    points: Vec<[f64; 3]>,
-    lines: Vec<[u32; 2]>,
-    triangles: Vec<[u32; 3]>,
-    coordinates: Vec<String>,
-    moves: Vec<Vec<[f64; 3]>>,
-}
 
 /// What the page reads: numbers one after another.
 #[derive(Serialize)]
@@ -55,45 +32,6 @@ struct Told<'a> {
 }
 
 impl Skin {
-    /// That of the bodies of a problem; coordinates are counted in `units`.
-    pub(super) fn of(problem: &Problem, units: &[f64]) -> Self {
-        match problem {
-            Problem::Plane(problem) => Self::within(problem, units),
-            Problem::Space(problem) => Self::within(problem, units),
-        }
-    }
-
-    fn within<const D: usize>(problem: &ProblemIn<D>, units: &[f64]) -> Self {
-        let Some(surface) = problem.surface() else { return Self::default() };
-        let mut skin = Self { chord: chord(problem.case(), Some(surface)), ..Self::default() };
-        skin.points = surface.vertices.iter().map(Vector::to_3d).collect();
-        for element in &surface.elements {
-            match element.vertices[..] {
-                [a, b] => skin.lines.push([a, b]),
-                [a, b, c] => skin.triangles.push([a, b, c]),
-                _ => {}
-            }
-        }
-        for body in problem.structures() {
-            skin.coordinates.extend(body.structure.coordinates().iter().map(|c| c.name.clone()));
-            skin.moves.extend(moves(surface, body, units));
-        }
-        skin
-    }
-
-    /// Displacements in a motion, so large that the largest over a period is that shown.
-    fn displaced(&self, shape: &[Share]) -> Vec<[Complex64; 3]> {
-        let mut all = vec![[Complex64::new(0.0, 0.0); 3]; self.points.len()];
-        for (q, own) in amplitudes(shape).iter().zip(&self.moves) {
-            for (d, unit) in all.iter_mut().zip(own) {
-                (0..3).for_each(|k| d[k] += q * unit[k]);
-            }
-        }
-        let scale = self.drawn(&all);
-        all.iter_mut().flatten().for_each(|d| *d *= scale);
-        all
-    }
-
     /// Writes what the page reads.
     pub(super) fn write(&self, file: &Path) -> Result<(), RunError> {
         let own = self.thinned(MOST);
@@ -123,12 +61,12 @@ impl Skin {
         (name, about): (&str, &About),
         crossing: &FlutterRow,
     ) -> Result<(), RunError> {
-        let own = |shifts| Moving { points: &self.points, shifts, cp: Vec::new() };
         let chains: Vec<Vec<u32>> = self.lines.iter().map(|l| l.to_vec()).collect();
-        let (moving, lines, triangles) = match &crossing.walls {
-            Some(walls) => (self.moving(walls), &walls.lines, &walls.triangles),
-            None => (own(self.displaced(&crossing.shape)), &chains, &self.triangles),
+        let (lines, triangles) = match &crossing.walls {
+            Some(walls) => (&walls.lines, &walls.triangles),
+            None => (&chains, &self.triangles),
         };
+        let moving = self.moving(crossing);
         let facets = if triangles.is_empty() { Facets::Polylines(lines) } else { Facets::Triangles(triangles) };
         make_within(out, FOLDER)?;
         let mut files = Vec::new();
@@ -142,74 +80,6 @@ impl Skin {
         let listed: Vec<(f64, &str)> = files.iter().map(|(time, file)| (*time, file.as_str())).collect();
         Ok(write_collection(&out.join(format!("{name}.pvd")), &listed)?)
     }
-
-    /// Walls in a motion, displaced as far as surfaces are, with the pressure that goes with so much.
-    fn moving<'a>(&self, walls: &'a WallMotion) -> Moving<'a> {
-        let complex = |[re, im]: [f64; 2]| Complex64::new(re, im);
-        let mut shifts: Vec<[Complex64; 3]> = walls.displacement.iter().map(|d| d.map(complex)).collect();
-        let scale = self.drawn(&shifts);
-        shifts.iter_mut().flatten().for_each(|d| *d *= scale);
-        Moving { points: &walls.points, shifts, cp: walls.cp.iter().map(|cp| scale * complex(*cp)).collect() }
-    }
-
-    /// The factor that makes displacements as large as they are drawn.
-    fn drawn(&self, shifts: &[[Complex64; 3]]) -> f64 {
-        let largest = shifts.iter().map(greatest).fold(0.0, f64::max);
-        if largest > 0.0 { SHOWN * self.chord / largest } else { 0.0 }
-    }
-
-    /// With at most so many triangles: corners in a cell of a grid that look the same way become one.
-    fn thinned(&self, most: usize) -> Self {
-        let [low, high] =
-            [f64::min, f64::max].map(|f| [0, 1, 2].map(|d| self.points.iter().map(|x| x[d]).reduce(f).unwrap_or(0.0)));
-        let longest = (0..3).map(|d| high[d] - low[d]).fold(0.0, f64::max);
-        let mut cell = longest / (most as f64).sqrt();
-        let mut found = self.clone();
-        while found.triangles.len() > most {
-            found = self.clustered(low, cell);
-            cell *= COARSER;
-        }
-        found
-    }
-
-    fn clustered(&self, low: [f64; 3], cell: f64) -> Self {
-        let mut normals = vec![Vector::<3>::ZERO; self.points.len()];
-        for t in &self.triangles {
-            let [a, b, c] = t.map(|i| Vector(self.points[i as usize]));
-            let area = Vector(cross(&(b - a).0, &(c - a).0));
-            t.iter().for_each(|i| normals[*i as usize] += area);
-        }
-        let mut cells: BTreeMap<([i64; 3], u8), u32> = BTreeMap::new();
-        let mut kept: Vec<usize> = Vec::new();
-        let number: Vec<u32> = (0..self.points.len())
-            .map(|i| {
-                let at = [0, 1, 2].map(|d| ((self.points[i][d] - low[d]) / cell) as i64);
-                let side = (0..3).map(|d| u8::from(normals[i][d] > 0.0) << d).sum();
-                *cells.entry((at, side)).or_insert_with(|| {
-                    kept.push(i);
-                    kept.len() as u32 - 1
-                })
-            })
-            .collect();
-        let mut triangles: Vec<[u32; 3]> = self.triangles.iter().map(|t| t.map(|i| number[i as usize])).collect();
-        triangles.retain(|[a, b, c]| a != b && b != c && c != a);
-        let chosen = |all: &Vec<[f64; 3]>| kept.iter().map(|i| all[*i]).collect();
-        Self {
-            points: chosen(&self.points),
-            triangles,
-            moves: self.moves.iter().map(chosen).collect(),
-            lines: Vec::new(),
-            coordinates: self.coordinates.clone(),
-            chord: self.chord,
-        }
-    }
-}
-
-/// Points in a motion: where they are at rest, and complex displacements and pressure coefficients, of which the latter may be absent.
-struct Moving<'a> {
-    points: &'a [[f64; 3]],
-    shifts: Vec<[Complex64; 3]>,
-    cp: Vec<Complex64>,
 }
 
 impl Moving<'_> {
@@ -232,16 +102,10 @@ impl Moving<'_> {
     }
 }
 
-/// The greatest length of Re(d e^{iφ}) over all phases φ.
-fn greatest(d: &[Complex64; 3]) -> f64 {
-    let sum = |f: fn(&Complex64) -> f64| d.iter().map(f).sum::<f64>();
-    let (a, b, ab) = (sum(|z| z.re * z.re), sum(|z| z.im * z.im), sum(|z| z.re * z.im));
-    (0.5 * (a + b) + (0.5 * (a - b)).hypot(ab)).sqrt()
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::record::flutter::{Share, WallMotion};
     use crate::run::about;
     use crate::study::flutter::problem_of;
 
@@ -250,21 +114,6 @@ mod tests {
 
     fn share(coordinate: &str, amplitude: f64, phase_deg: f64) -> Share {
         Share { coordinate: coordinate.into(), amplitude, phase_deg }
-    }
-
-    #[test]
-    fn a_section_turns_about_its_axis_and_goes_up() {
-        let problem = problem_of(CASE);
-        let skin = Skin::of(&problem, &[0.5, 1.0]);
-        assert_eq!(skin.coordinates, ["plunge", "pitch"]);
-        for (x, [up, turn]) in skin.points.iter().zip(skin.moves[0].iter().zip(&skin.moves[1]).map(|(a, b)| [a, b])) {
-            assert_eq!(*up, [0.0, 0.5, 0.0]);
-            // nose up: what lies aft of the axis at 0.3 goes down
-            assert!((turn[1] + (x[0] - 0.3)).abs() < 1e-9 && (turn[0] - x[1]).abs() < 1e-9, "{x:?} {turn:?}");
-        }
-        let shape = [share("plunge", 1.0, 0.0), share("pitch", 0.4, 90.0)];
-        let largest = skin.displaced(&shape).iter().map(greatest).fold(0.0, f64::max);
-        assert!((largest - 0.1).abs() < 1e-12, "{largest}");
     }
 
     #[test]
@@ -300,27 +149,5 @@ mod tests {
         let told: serde_json::Value = serde_json::from_str(&text).unwrap();
         assert_eq!(told["points"].as_array().unwrap().len(), 3 * skin.points.len());
         assert_eq!(told["moves"][0][1], 0.5);
-    }
-
-    #[test]
-    fn many_triangles_become_few_without_holes_between_sides() {
-        let n = 120_u32;
-        let place = |k: u32| f64::from(k) / f64::from(n - 1);
-        let mut skin = Skin { chord: 1.0, ..Skin::default() };
-        for (z, over) in [(0.01, true), (-0.01, false)] {
-            let first = skin.points.len() as u32;
-            skin.points.extend((0..n * n).map(|k| [place(k % n), place(k / n), z]));
-            for (i, j) in (0..n - 1).flat_map(|i| (0..n - 1).map(move |j| (i, j))) {
-                let [a, b, c, d] = [i + n * j, i + 1 + n * j, i + 1 + n * (j + 1), i + n * (j + 1)].map(|k| first + k);
-                let both = [[a, b, c], [a, c, d]];
-                skin.triangles.extend(both.map(|[a, b, c]| if over { [a, b, c] } else { [a, c, b] }));
-            }
-        }
-        skin.moves = vec![skin.points.clone()];
-        let found = skin.thinned(MOST);
-        assert!(found.triangles.len() <= MOST && found.triangles.len() > MOST / 4, "{}", found.triangles.len());
-        let mixed = found.triangles.iter().filter(|t| t.iter().any(|i| found.points[*i as usize][2] > 0.0));
-        assert!(mixed.clone().all(|t| t.iter().all(|i| found.points[*i as usize][2] > 0.0)));
-        assert_eq!(found.points, found.moves[0]);
     }
 }

@@ -62,13 +62,13 @@ impl<'a, S: Marches<D> + 'a, const D: usize> Flow<'a> for GasFlow<'a, S, D> {
         let found = Found { case, view, surface, axes, names, balance, strips, span_load, wake };
         let mut summary = found.summary(log, gas.state, &Spent { clock, solved });
         if let Some(bars) = bars
-            && !bars(case, &mut summary, log)?
+            && !bars(&mut summary, log)?
         {
             return Ok(Err(log.record.iteration));
         }
         let solid = end.solver.system.solid_snapshot(frame, state);
         summary.structures.solid = solid.as_ref().map(|at| solid_end(at, log));
-        summary.conditions.cloud = spacing::of_stage(case, end.stage.factor).cloud;
+        summary.conditions.cloud = spacing::of_stage(case, end.stage.factor);
         let doubts = doubts::told(case, (&summary, surface), log.record.trace.largest(), solid.as_ref());
         doubts.iter().for_each(|d| log.warn(d));
         summary.convergence.warnings.clone_from(&log.record.warnings);

@@ -16,7 +16,6 @@ use super::record::Log;
 use super::record::saved::Saved;
 use super::solution::Solution;
 use super::studies::ForceSource;
-use crate::case::Case;
 use crate::problem::{Problem, ProblemIn, Remark, RunError, coupled};
 use crate::record::summary::Summary;
 use stages::Stages;
@@ -50,8 +49,8 @@ impl Way {
     }
 }
 
-/// Finds the error bars of a run, given its case on its cloud and its summary, before that is written; false when told to stop.
-pub(crate) type Bars<'a> = &'a mut dyn FnMut(&Case, &mut Summary, &mut Log<'_>) -> Result<bool, RunError>;
+/// Finds the error bars of a run, given its summary, before that is written; false when told to stop.
+pub(crate) type Bars<'a> = &'a mut dyn FnMut(&mut Summary, &mut Log<'_>) -> Result<bool, RunError>;
 
 /// The solution of a run, or the iteration at which it was told to stop.
 pub(crate) type Ended = Result<Solution, u64>;
@@ -85,7 +84,18 @@ pub(crate) fn solve<'a>(problem: &Problem, way: Way, monitor: &'a mut dyn Monito
 
 /// Solves a problem in memory; `None` when told to stop.
 pub(crate) fn in_memory(problem: &Problem, monitor: &mut dyn Monitor) -> Result<Option<Solution>, RunError> {
-    match solve(problem, Way::of(Origin::Case), monitor)? {
+    match problem {
+        Problem::Plane(problem) => in_memory_in(problem, monitor),
+        Problem::Space(problem) => in_memory_in(problem, monitor),
+    }
+}
+
+/// The same for a problem of known dimension.
+pub(crate) fn in_memory_in<const D: usize>(
+    problem: &ProblemIn<D>,
+    monitor: &mut dyn Monitor,
+) -> Result<Option<Solution>, RunError> {
+    match solve_in(problem, (Way::of(Origin::Case), None), monitor)? {
         Ok(mut flow) => Ok(flow.conclude(None)?.ok()),
         Err(_) => Ok(None),
     }

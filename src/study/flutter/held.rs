@@ -1,7 +1,4 @@
 //! The structure of a case before there is a flow: what stored forces must fit.
-use std::path::Path;
-
-use crate::case::Case;
 use crate::coupling::Attached;
 use crate::observe::structure::is_angle;
 use crate::problem::reference::chord;
@@ -62,7 +59,7 @@ impl Held {
             }
             names.extend(body.structure.coordinates().iter().map(|c| c.name.clone()));
             springs.extend(body.structure.coordinates().iter().map(|c| c.spring));
-            marks.extend((0..m).map(|k| mark(case, problem.input(), body, k)));
+            marks.extend((0..m).map(|k| mark(problem, body, k)));
         }
         let translations = surface.map_or(Vec::new(), |s| translations::translations(case, s, (bodies, n)));
         Self { chord: chord(case, surface), names, marks, matrices, springs, translations }
@@ -76,17 +73,19 @@ pub(crate) fn problem_of(text: &str) -> Problem {
     Problem::of_case(&case, "").unwrap_or_else(|e| panic!("{e}"))
 }
 
-fn mark<const D: usize>(case: &Case, input: &Path, body: &Attached<D>, k: usize) -> Mark {
+fn mark<const D: usize>(problem: &ProblemIn<D>, body: &Attached<D>, k: usize) -> Mark {
     let pivot = match body.structure.model() {
         Model::Planar(planar) => Some(planar.pivot.to_vec()),
         Model::Spatial(rigid) => Some(rigid.pivot.to_vec()),
         Model::Floating(body) => Some(body.pivot[..D].to_vec()),
         Model::Modal(_) => None,
     };
-    let mode = case.structure_of(body.body).and_then(|s| s.modes.get(k)).filter(|_| pivot.is_none());
-    let text = mode.and_then(|mode| match &mode.table {
-        Some(table) => Some(format!("{table:?}")),
-        None => files::text(input, &mode.file).ok(),
-    });
+    let text = match problem.modes_of(body.body) {
+        Some(modes) => modes.get(k).map(|mode| format!("{:?}", mode.table())),
+        None => {
+            let mode = problem.case().structure_of(body.body).and_then(|s| s.modes.get(k)).filter(|_| pivot.is_none());
+            mode.and_then(|mode| files::text(problem.input(), &mode.file).ok())
+        }
+    };
     Mark { pivot, shape: text.map(|t| format!("{:08x}", crc32fast::hash(t.as_bytes()))) }
 }

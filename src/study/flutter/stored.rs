@@ -1,10 +1,10 @@
 //! Forces that a former run left: `flutter.json` of `alula flutter`, or `gaf.json` of `alula gaf`.
 use num_complex::Complex64;
-use serde::Deserialize;
 
 use super::held::Held;
 use crate::problem::RunError;
-use crate::record::flutter::Mark;
+use crate::record::flutter::{Boundary, FlutterAt, Mark};
+use crate::record::gaf::{GafFile, SquareMatrix};
 
 /// Part by which Mach numbers and chords may differ, and angles in degrees.
 const SAME: f64 = 1e-6;
@@ -12,55 +12,7 @@ const SAME: f64 = 1e-6;
 /// All that a file has.
 pub(crate) struct Stored {
     file: String,
-    all: Vec<At>,
-}
-
-/// Forces at one Mach number.
-#[derive(Deserialize)]
-struct At {
-    mach: f64,
-    alpha_deg: f64,
-    chord: f64,
-    /// Length of the reduced frequencies.
-    semichord: f64,
-    coordinates: Vec<String>,
-    moved: Vec<Mark>,
-    reduced_frequencies: Vec<f64>,
-    forces: Vec<Vec<[f64; 2]>>,
-    residual: f64,
-}
-
-#[derive(Deserialize)]
-struct OfFlutter {
-    flutter: Vec<At>,
-}
-
-/// `gaf.json`.
-#[derive(Deserialize)]
-struct OfGaf {
-    mach: f64,
-    alpha_deg: f64,
-    chord: f64,
-    area: f64,
-    reduced_length: f64,
-    pivot: Option<Vec<f64>>,
-    modes: Vec<String>,
-    matrices: Vec<Square>,
-    #[serde(default)]
-    columns: Vec<Solved>,
-}
-
-/// How a column was found.
-#[derive(Deserialize)]
-struct Solved {
-    #[serde(default)]
-    left: f64,
-}
-
-#[derive(Deserialize)]
-struct Square {
-    k: f64,
-    q: Vec<Vec<[f64; 2]>>,
+    all: Vec<FlutterAt>,
 }
 
 /// Forces on the coordinates of a case, and what is left of the residual of their equations.
@@ -78,12 +30,12 @@ impl Stored {
         let wrong = |what: String| unreadable(&file, &what);
         let value: serde_json::Value = serde_json::from_str(text).map_err(|e| wrong(format!("is no JSON: {e}")))?;
         let all = if value.get("flutter").is_some() {
-            serde_json::from_value::<OfFlutter>(value).map(|f| f.flutter)
+            serde_json::from_value::<Boundary>(value).map(|found| found.flutter)
         } else {
-            serde_json::from_value::<OfGaf>(value).map(|gaf| vec![gaf.at()])
+            serde_json::from_value::<GafFile>(value).map(|gaf| vec![of_gaf(gaf)])
         };
         let all = all.map_err(|e| wrong(format!("has no forces of this version: {e}")))?;
-        let whole = |at: &At| {
+        let whole = |at: &FlutterAt| {
             let n = at.coordinates.len();
             let square = at.forces.iter().all(|f| f.len() == n * n && f.iter().flatten().all(|x| x.is_finite()));
             let rising = at.reduced_frequencies.windows(2).all(|w| w[0] < w[1]);
@@ -144,33 +96,31 @@ impl Stored {
     }
 }
 
-impl OfGaf {
-    /// In units of the solver: plunge is counted in lengths of the reduced frequency there.
-    fn at(mut self) -> At {
-        self.matrices.sort_by(|a, b| a.k.total_cmp(&b.k));
-        let length = |mode: &String| if mode == "plunge" { self.reduced_length } else { 1.0 };
-        let pressure = 0.5 * self.mach * self.mach * self.area * self.chord;
-        let forces = |square: &Square| {
-            let row = |(row, mode): (&Vec<[f64; 2]>, &String)| {
-                let scaled =
-                    |(q, other): (&[f64; 2], &String)| q.map(|x| x * pressure / (length(mode) * length(other)));
-                row.iter().zip(&self.modes).map(scaled).collect::<Vec<_>>()
-            };
-            square.q.iter().zip(&self.modes).flat_map(row).collect()
+/// The forces of a table of `alula gaf` in units of the solver: plunge is counted in lengths of the reduced frequency there.
+fn of_gaf(mut gaf: GafFile) -> FlutterAt {
+    gaf.matrices.sort_by(|a, b| a.k.total_cmp(&b.k));
+    let length = |mode: &String| if mode == "plunge" { gaf.reduced_length } else { 1.0 };
+    let pressure = 0.5 * gaf.mach * gaf.mach * gaf.area * gaf.chord;
+    let forces = |square: &SquareMatrix| {
+        let row = |(row, mode): (&Vec<[f64; 2]>, &String)| {
+            let scaled = |(q, other): (&[f64; 2], &String)| q.map(|x| x * pressure / (length(mode) * length(other)));
+            row.iter().zip(&gaf.modes).map(scaled).collect::<Vec<_>>()
         };
-        let rigid = |mode: &String| mode == "plunge" || mode == "pitch";
-        let mark = |mode: &String| Mark { pivot: self.pivot.clone().filter(|_| rigid(mode)), shape: None };
-        At {
-            mach: self.mach,
-            alpha_deg: self.alpha_deg,
-            chord: self.chord,
-            semichord: self.reduced_length,
-            moved: self.modes.iter().map(mark).collect(),
-            reduced_frequencies: self.matrices.iter().map(|m| m.k).collect(),
-            forces: self.matrices.iter().map(forces).collect(),
-            coordinates: self.modes,
-            residual: self.columns.iter().map(|c| c.left).fold(0.0, f64::max),
-        }
+        square.q.iter().zip(&gaf.modes).flat_map(row).collect()
+    };
+    let rigid = |mode: &String| mode == "plunge" || mode == "pitch";
+    let mark = |mode: &String| Mark { pivot: gaf.pivot.clone().filter(|_| rigid(mode)), shape: None };
+    FlutterAt {
+        mach: gaf.mach,
+        alpha_deg: gaf.alpha_deg,
+        chord: gaf.chord,
+        semichord: gaf.reduced_length,
+        moved: gaf.modes.iter().map(mark).collect(),
+        reduced_frequencies: gaf.matrices.iter().map(|m| m.k).collect(),
+        forces: gaf.matrices.iter().map(forces).collect(),
+        coordinates: gaf.modes,
+        residual: gaf.columns.iter().filter_map(|c| c.solved).map(|s| s.left).fold(0.0, f64::max),
+        ..FlutterAt::default()
     }
 }
 

@@ -6,7 +6,7 @@ use super::super::flow;
 use super::super::monitor::{Monitor, Quiet};
 use super::super::solution::Solution;
 use super::cloud_error::{self, OnCoarser};
-use super::record::{Column, Matrices};
+use super::{Column, Matrices};
 use crate::case::{AnyMode, Cloud, Gaf, Mode};
 use crate::problem::coarser::{COARSER, refinement};
 use crate::problem::{Problem, RunError};
@@ -51,7 +51,7 @@ pub(super) fn columns(
             matrices.columns.push(column);
             keep(matrices)?;
             let one = own(1.0)?.on_cloud(cloud)?;
-            ratio = refinement(one.given(), COARSER);
+            ratio = refinement(&one.given().cloud, COARSER);
             match swing.on_coarser(&one, monitor)? {
                 Asked::Stopped => return Ok(false),
                 Asked::Told(column) => coarse.push(*column),

@@ -7,7 +7,7 @@
 //! that of the middle one of them. The bar is the radius of a circle in the complex plane.
 use num_complex::Complex64;
 
-use super::record::{Column, Errors};
+use super::{Column, Errors};
 use crate::case::{Case, Gaf};
 
 /// Bar over estimate: nine of ten entries hold.

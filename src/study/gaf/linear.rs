@@ -14,7 +14,7 @@ use super::super::solution::Solution;
 use super::super::studies::{ForceSource, SOLVED, in_order};
 use super::super::time_left::Portion;
 use super::cloud_error::{self, OnCoarser};
-use super::record::{Column, Matrices, Solved};
+use super::{Column, Matrices, Solved};
 use crate::case::{AnyMode, Case, Cloud, Gaf, Mode};
 use crate::geometry::dimension;
 use crate::problem::coarser::{BETWEEN, COARSER, coarser, refinement, times_the_spacing};
@@ -133,7 +133,7 @@ impl Asked<'_> {
             match self.about(&coarse, &mut add, &mut Within { outer, monitor: &mut Quiet { monitor } }) {
                 Ok(Some(flow)) if flow.solved => {
                     shocks |= flow.shocks;
-                    others.push(OnCoarser { ratio: refinement(one.given(), ratio), columns: other });
+                    others.push(OnCoarser { ratio: refinement(&one.given().cloud, ratio), columns: other });
                 }
                 Ok(Some(_)) => monitor.note("the coarser cloud tells nothing: the steady flow on it did not converge"),
                 Ok(None) => return Ok(None),

@@ -8,6 +8,7 @@ mod hinge;
 mod hull;
 mod mesh;
 pub(crate) mod momentum;
+pub(crate) mod raster;
 mod rim;
 mod span;
 mod symmetry;

@@ -36,7 +36,7 @@ mod tests {
         let case =
             crate::case::read("[flow]\nmach = 0.5\n[[body]]\nnaca = \"0012\"\n[cloud]\nspacing = 0.1\n", "t").unwrap();
         let loads = Coefficients { cl: -1e-9, cd: 0.02, cm: -0.3 };
-        let point = PolarPoint { alpha_deg: -0.0, loads: Some(loads), converged: true, ..PolarPoint::of(&case) };
+        let point = PolarPoint { alpha_deg: -0.0, loads: Some(loads), converged: true, ..PolarPoint::of(&case.flow) };
         assert_eq!(point.told(), "M 0.5, alpha 0 deg: CL 0.00000, CD 0.02000, CM -0.30000");
     }
 }

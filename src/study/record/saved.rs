@@ -3,7 +3,7 @@ use std::borrow::Cow;
 
 use super::super::stage::Stage;
 use super::polar::PolarRecord;
-use crate::case::{Case, Structure};
+use crate::case::Case;
 use crate::cloud::sources::Source;
 use crate::math::Vector;
 use crate::observe::convergence::CloudLoads;
@@ -179,8 +179,7 @@ pub(crate) struct Saved<'a> {
 /// be changed.
 pub(crate) fn equations_of(case: &Case) -> u32 {
     let air = (&case.flow, &case.boundary, &case.initial, &case.scheme);
-    let structures: Vec<_> = case.structures.iter().map(Structure::as_given).collect();
-    let solids = (&case.bodies, &case.motion, &structures);
+    let solids = (&case.bodies, &case.motion, &case.structures);
     // without contact the same number as before it was asked for
     let contact = case.contact.as_ref().map_or_else(String::new, |contact| format!(" {contact:?}"));
     crc32fast::hash(format!("{air:?} {solids:?}{contact}").as_bytes())

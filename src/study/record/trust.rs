@@ -1,7 +1,7 @@
 //! Whether the numbers of a checkpoint are those of a run: checksums tell damage of the file, not what was written into it.
 use super::history::IterationHistory;
 use super::saved::{LagrangianCheckpoint, Saved, require};
-use crate::case::Case;
+use crate::case::{Case, Polar};
 use crate::observe::convergence::CloudLoads;
 use crate::observe::loads::Coefficients;
 use crate::problem::RunError;
@@ -23,7 +23,7 @@ impl Saved<'_> {
         let known = self.stage < self.stages.len() && self.stages.len() <= MOST_STAGES;
         require(known, "its stage is not among its stages")?;
         require(self.stages.iter().all(|s| is_of(case, s)), "its stages are not those of the case")?;
-        let points = case.points().len();
+        let points = case.polar.as_ref().map_or(1, Polar::len);
         let of_points = self.stages.iter().all(|s| s.point.is_none_or(|point| point < points));
         require(of_points, "its stages are of points that the case does not have")?;
         // a state of several instants never becomes one of fewer
@@ -46,13 +46,13 @@ impl Saved<'_> {
 
     /// Refuses points that are not those of the polar of the case, or not as a run tells them.
     fn points_of(&self, case: &Case) -> Result<(), RunError> {
-        let (points, asked) = (&self.polar.points, case.points());
+        let (points, asked) = (&self.polar.points, case.streams());
         let present = self.stages[self.stage].point;
         // the row of the present point may be there already
         let over = present.unwrap_or(0) <= points.len() && points.len() <= asked.len();
         require(points.is_empty() || over, "its points are not those of the case")?;
-        let of_case = points.iter().zip(&asked).all(|(point, case)| {
-            let own = PolarPoint::of(case);
+        let of_case = points.iter().zip(&asked).all(|(point, stream)| {
+            let own = PolarPoint::of(stream);
             (point.mach, point.alpha_deg) == (own.mach, own.alpha_deg)
         });
         require(of_case, "its points are at other angles or Mach numbers than the case asks for")?;

@@ -93,7 +93,7 @@ fn affordable<const D: usize>(
     (room, factor): (f64, f64),
     at: impl Fn(f64) -> Vec<Source<D>>,
 ) -> Vec<Source<D>> {
-    let spec = CloudSpec::of_case(&spacing::of_stage(case, factor));
+    let spec = CloudSpec::of(&spacing::of_stage(case, factor), &case.boundary);
     let cells = |sources: &[_]| count(&spec, Some(surface), sources).ok();
     let Some(alone) = cells(&[]) else { return Vec::new() };
     let mut coarser = 1.0;

@@ -14,7 +14,7 @@ use super::record::work::Clock;
 use crate::case::{Case, Temporal};
 use crate::geometry::dimension;
 use crate::problem::RunError;
-use crate::problem::solids::{build, supported};
+use crate::problem::solids::{Filling, supported};
 use crate::solid::modes::{ModeRequest, modes};
 
 pub use record::{ModeRow, PeriodicRow, ProbeHarmonic, ProbeRow, SolidLedger, SolidSolution, SolidSummary};
@@ -55,7 +55,7 @@ fn study<const D: usize>(
     monitor: &mut dyn Monitor,
 ) -> Result<Ended, RunError> {
     let clock = Clock::start();
-    let built = build::<D>(case, input)?;
+    let built = Filling::of(case, input).build::<D>()?;
     built.notes.iter().for_each(|n| monitor.note(n));
     built.warnings.iter().for_each(|w| monitor.warn(w));
     let start = built.structure.start(|i| built.velocity[i]);

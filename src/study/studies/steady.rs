@@ -62,8 +62,7 @@ pub(crate) fn relax<S: HasGas<D>, const D: usize>(
         system.prescribe(0.0, &mut u);
     }
     let asked = spacing::asked(&log.case);
-    let again = turn.next().is_some_and(|stage| stage.task == Task::Relax);
-    let goals = goals(steady, asked.as_ref(), again, turn, log);
+    let goals = goals(steady, turn, &log.case);
     let mut level = 0;
     let mut relax = Relax::new(system, control(steady, D), u, &system.start(), resume);
     let mut hurried = !turn.last();
@@ -112,21 +111,16 @@ pub(crate) fn relax<S: HasGas<D>, const D: usize>(
     Ok(Some(Reached { state, end: Some((frame, end)), enough, unsteady }))
 }
 
-/// Orders of magnitude that the residual has to fall by, one after the other. On a cloud of a family the first serve where its loads are at
-/// rest then and another cloud follows, the second where the loads of a last cloud are at rest, and else the third.
-fn goals<const D: usize>(
-    steady: &Steady,
-    asked: Option<&Accuracy>,
-    again: bool,
-    turn: &Turn<'_, D>,
-    log: &Log<'_>,
-) -> Vec<f64> {
-    if asked.is_some() {
+/// Orders of magnitude that the residual of this stage has to fall by, one after the other. On a cloud of a family the first serve where its loads
+/// are at rest then and another cloud follows, the second where the loads of a last cloud are at rest, and else the third.
+fn goals<const D: usize>(steady: &Steady, turn: &Turn<'_, D>, case: &Case) -> Vec<f64> {
+    if spacing::asked(case).is_some() {
         return vec![steady.orders.min(EARLY_ORDERS), steady.orders, steady.orders + SETTLING];
     }
+    let again = turn.next().is_some_and(|stage| stage.task == Task::Relax);
     let early = match again {
         // what an adapted cloud is refined by needs more
-        true if turn.stage().factor > 1.0 && spacing::begins_near(&log.case) => EARLY_ORDERS_OF_SHOCKS,
+        true if turn.stage().factor > 1.0 && spacing::begins_near(case) => EARLY_ORDERS_OF_SHOCKS,
         true => EARLY_ORDERS,
         false => steady.orders,
     };

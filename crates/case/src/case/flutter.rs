@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 pub use limit_cycles::{GasResponse, LimitCycles};
 
 use super::quantity::Velocity;
-use super::{Case, Motion, ParticleMotion, Steady, Temporal, Time};
+use super::{Case, Temporal, Time};
 
 /// The table `[flutter]`: settings of the flutter analysis.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -82,19 +82,6 @@ impl Case {
     /// True when forces are computed about the static aeroelastic equilibrium.
     pub fn is_trimmed(&self) -> bool {
         self.flutter.as_ref().is_some_and(|f| f.trim)
-    }
-
-    /// The steady case on the same cloud, converged tightly enough for linearised motions about it; `particles` follow
-    /// the bodies.
-    pub fn settled_case(&self, particles: ParticleMotion) -> Self {
-        /// Orders by which the residual falls; the remaining residual acts as a spurious force.
-        const ORDERS: f64 = 9.0;
-        let mut case = self.clone();
-        let steady = if let Temporal::Steady(steady) = &self.time { steady.clone() } else { Steady::default() };
-        case.time = Temporal::Steady(Steady { orders: ORDERS, ..steady });
-        case.motion = Some(Motion { particles, law: self.motion.clone().map_or_else(Default::default, |m| m.law) });
-        case.output.report = false;
-        case
     }
 
     /// Estimated period of the free vibration of structures that a march is to find.

@@ -2,8 +2,8 @@
 use serde::{Deserialize, Serialize};
 
 use super::{
-    Angle, BodyMotionSpec, Case, Freedom, HarmonicCount, Harmonics, Length, ModeMotion, Motion, OwnFrequency,
-    ParticleMotion, Pitch, Plunge, SteadyMethod, Structure, StructureMode, StructureModel, Temporal,
+    Angle, BodyMotionSpec, Freedom, Length, ModeMotion, OwnFrequency, ParticleMotion, Pitch, Plunge, Structure,
+    StructureMode, StructureModel,
 };
 
 /// The table `[gaf]`: settings of the generalised aerodynamic forces.
@@ -114,75 +114,43 @@ impl Gaf {
     }
 }
 
-impl Case {
-    /// The harmonic balance of one mode at the reduced frequency `k`, with `factor` times the amplitude of `[gaf]`. The
-    /// case keeps the table, because generalised forces are evaluated for its modes.
-    pub fn gaf_case(&self, gaf: &Gaf, mode: AnyMode<'_>, k: f64, factor: f64) -> Self {
-        let (none, harmonics) = (Angle(0.0), gaf.harmonics.unwrap_or(1));
+impl Gaf {
+    /// The motion of one mode at the reduced frequency `k`, with `factor` times the amplitude of the table.
+    pub fn motion_of(&self, mode: AnyMode<'_>, k: f64, factor: f64) -> BodyMotionSpec {
+        let none = Angle(0.0);
         let mut law = BodyMotionSpec {
             reduced_frequency: Some(k),
-            reduced_length: gaf.reduced_length,
-            pivot: gaf.pivot.clone(),
+            reduced_length: self.reduced_length,
+            pivot: self.pivot.clone(),
             ..BodyMotionSpec::default()
         };
-        let mut particles = gaf.particles;
         match mode {
             AnyMode::Rigid(Mode::Pitch) => {
-                let amplitude = Angle(factor * gaf.pitch.unwrap_or(Gaf::PITCH).0);
+                let amplitude = Angle(factor * self.pitch.unwrap_or(Self::PITCH).0);
                 law.pitch = vec![Pitch { amplitude, phase: none, own: OwnFrequency::default() }];
             }
             AnyMode::Rigid(Mode::Plunge) => {
-                let amplitude = Length(factor * gaf.plunge.unwrap_or(Gaf::PLUNGE).0);
+                let amplitude = Length(factor * self.plunge.unwrap_or(Self::PLUNGE).0);
                 law.plunge = vec![Plunge { amplitude, phase: none, direction: None, own: OwnFrequency::default() }];
             }
             AnyMode::Flexible(mode) => {
-                particles = ParticleMotion::Deforming;
                 let amplitude = factor * mode.amplitude.unwrap_or_default();
                 law.modes = vec![ModeMotion { file: mode.file.clone(), amplitude, phase: none }];
             }
         }
-        let mut case = self.clone();
-        case.title = format!("{}: {} at k = {k}", self.title, mode.name());
-        case.motion = Some(Motion { particles, law });
-        case.reference.moment_point = gaf.pivot.clone().or(case.reference.moment_point);
-        case.time = Temporal::Harmonics(Harmonics {
-            number: HarmonicCount::Fixed(harmonics),
-            oversample: 1.0,
-            tail: 0.01,
-            most: harmonics,
-            orders: 5.0,
-            tolerance: 1e-4,
-            iterations: 500,
-            march: 0,
-            check: 0,
-            method: SteadyMethod::NewtonKrylov,
-            cfl: 10.0,
-            cfl_max: 1e6,
-            frequency: None,
-            period: None,
-        });
-        case.output.report = false;
-        case
+        law
     }
 
-    /// The steady case about which the forces in all modes of `gaf` are linearised. All bodies belong to one structure
-    /// at rest, whose masses and springs do not affect the forces. If all modes are rigid-body modes, the cloud moves
-    /// rigidly.
-    pub fn gaf_steady_case(&self, gaf: &Gaf) -> Self {
-        let particles = if gaf.flexible.is_empty() { gaf.particles } else { ParticleMotion::Deforming };
-        let mut case = self.settled_case(particles);
-        if let Some(motion) = &mut case.motion {
-            motion.law = BodyMotionSpec::default();
+    /// How particles follow the modes: those of flexible ones deform the cloud.
+    pub fn particles_of<'a>(&self, mut modes: impl Iterator<Item = AnyMode<'a>>) -> ParticleMotion {
+        match modes.any(|mode| matches!(mode, AnyMode::Flexible(_))) {
+            true => ParticleMotion::Deforming,
+            false => self.particles,
         }
-        case.reference.moment_point = gaf.pivot.clone().or(case.reference.moment_point);
-        case.structures = vec![gaf.structure()];
-        case
     }
-}
 
-impl Gaf {
     /// The modes as coordinates of one structure in the order of the columns, with unit masses and stiffnesses.
-    fn structure(&self) -> Structure {
+    pub fn structure(&self) -> Structure {
         let freedom = |mode: &Mode| match mode {
             Mode::Plunge => Freedom::Plunge,
             Mode::Pitch => Freedom::Pitch,

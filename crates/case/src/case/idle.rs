@@ -70,6 +70,13 @@ pub(super) fn take_out(tree: &mut Map<String, Value>, gas: bool) {
             keys.remove(key);
         }
     }
+    // own modes are found, not given
+    let structures = whole.get_mut("structure").and_then(Value::as_array_mut).into_iter().flatten();
+    for keys in structures.filter_map(Value::as_object_mut) {
+        if keys.get("model").is_some_and(|model| model == "own_modes") {
+            keys.remove("mode");
+        }
+    }
     if let Value::Object(rest) = whole {
         *tree = rest;
     }

@@ -238,8 +238,7 @@ impl Case {
         let modes = laws.flat_map(|law| &law.modes).map(|mode| mode.file.as_str());
         let balanced = self.gaf.iter().filter(|_| matches!(self.time, Temporal::Harmonics(_)));
         let forces = balanced.flat_map(|g| &g.flexible).map(|mode| mode.file.as_str());
-        let elastic =
-            self.structures.iter().flat_map(|s| &s.modes).filter(|m| m.table.is_none()).map(|mode| mode.file.as_str());
+        let elastic = self.structures.iter().flat_map(|s| &s.modes).map(|mode| mode.file.as_str());
         shapes.chain(tables).chain(modes).chain(forces).chain(elastic)
     }
 

@@ -2,13 +2,13 @@
 //!
 //! In the file a list stands where a single value stands, `alpha = "-4:8:1 deg"`. Behind the file the free stream keeps one
 //! value, the first, so that whoever looks at a flow sees one; the lists are a part of their own, and
-//! [`Case::points`] makes one plain case of each combination.
+//! [`Case::streams`] makes one plain free stream of each combination.
 use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value};
 
-use super::Case;
 use super::draft::Draft;
 use super::quantity::Angle;
+use super::{Case, Flow};
 
 /// Keys of `[flow]` that may be lists.
 const LISTS: [&str; 2] = ["alpha", "mach"];
@@ -27,18 +27,14 @@ pub struct Polar {
 }
 
 impl Case {
-    /// The case at each point of its polar: all angles at the first Mach number, then all at the next; the case itself
-    /// when it has no polar.
-    pub fn points(&self) -> Vec<Self> {
+    /// The free stream at each point of the polar: all angles at the first Mach number, then all at the next; that of the case
+    /// alone when it has no polar.
+    pub fn streams(&self) -> Vec<Flow> {
         let none = Polar::default();
         let polar = self.polar.as_ref().unwrap_or(&none);
         let machs = if polar.mach.is_empty() { vec![self.flow.mach] } else { some(&polar.mach) };
         let alphas = if polar.alpha.is_empty() { vec![self.flow.alpha] } else { polar.alpha.clone() };
-        let at = |mach: Option<f64>, alpha: Angle| {
-            let mut case = Self { polar: None, ..self.clone() };
-            (case.flow.mach, case.flow.alpha) = (mach, alpha);
-            case
-        };
+        let at = |mach: Option<f64>, alpha: Angle| Flow { mach, alpha, ..self.flow.clone() };
         machs.iter().flat_map(|mach| alphas.iter().map(move |alpha| at(*mach, *alpha))).collect()
     }
 }
@@ -208,7 +204,7 @@ mod tests {
     }
 
     fn degrees(case: &Case) -> Vec<f64> {
-        case.points().iter().map(|p| p.flow.alpha.0.to_degrees()).collect()
+        case.streams().iter().map(|flow| flow.alpha.0.to_degrees()).collect()
     }
 
     #[test]
@@ -218,9 +214,9 @@ mod tests {
             ["\"-0.3:0.6:0.3 deg\"", "[\"-0.3 deg\", 0, \"0.3 deg\", \"0.6 deg\"]", "\"-0.3, 0, 0.3, 0.6 deg\""]
         {
             let c = case(&format!("mach = 0.3\nalpha = {alpha}")).unwrap();
-            let found: Vec<f64> = c.points().iter().map(|p| p.flow.alpha.0).collect();
+            let found: Vec<f64> = c.streams().iter().map(|flow| flow.alpha.0).collect();
             assert_eq!(found, ["-0.3 deg", "0 deg", "0.3 deg", "0.6 deg"].map(single), "{alpha}");
-            assert!(c.points().iter().all(|p| p.polar.is_none() && p.flow.mach == Some(0.3)));
+            assert!(c.streams().iter().all(|flow| flow.mach == Some(0.3)));
         }
         assert!((degrees(&case("mach = 0.3\nalpha = [-2, 0, \"4 deg\"]").unwrap())[0] + 2.0).abs() < 1e-14);
         for plain in ["[-2, 0, 4.0]", "\"-2, 0, 4\"", "[-2, 0, \"4 deg\"]"] {
@@ -238,12 +234,12 @@ mod tests {
     #[test]
     fn every_combination_is_a_point_and_one_value_is_no_list() {
         let c = case("mach = [0.3, 0.5]\nalpha = \"-2:2:2 deg\"").unwrap();
-        let points = c.points();
-        assert_eq!((points.len(), c.polar.as_ref().unwrap().len(), c.flow.mach), (6, 6, Some(0.3)));
-        assert_eq!((points[3].flow.mach, points[3].flow.alpha), (Some(0.5), points[0].flow.alpha));
+        let streams = c.streams();
+        assert_eq!((streams.len(), c.polar.as_ref().unwrap().len(), c.flow.mach), (6, 6, Some(0.3)));
+        assert_eq!((streams[3].mach, streams[3].alpha), (Some(0.5), streams[0].alpha));
         for alpha in ["\"2 deg\"", "[\"2 deg\"]", "\"2:2:1 deg\""] {
             let c = case(&format!("mach = 0.3\nalpha = {alpha}")).unwrap();
-            assert!(c.polar.is_none() && c.points() == [c.clone()], "{alpha}");
+            assert!(c.polar.is_none() && c.streams() == [c.flow.clone()], "{alpha}");
         }
         assert_eq!(read(&write(&c), "t").unwrap(), c);
     }

@@ -375,7 +375,7 @@ impl Case {
     }
 
     /// All solids of particles, with their body numbers.
-    fn bodies_of_particles(&self) -> impl Iterator<Item = (usize, &Body, &Solid)> {
+    pub fn bodies_of_particles(&self) -> impl Iterator<Item = (usize, &Body, &Solid)> {
         self.bodies.iter().enumerate().filter_map(|(i, body)| Some((i, body, body.solid.as_ref()?)))
     }
 

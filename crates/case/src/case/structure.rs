@@ -7,7 +7,6 @@ use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
 
-use super::mode_file::ModeTable;
 use super::{Acceleration, Case, Flow, Frequency, Inertia, Length, Mass, Time};
 
 /// Values by name of the coordinate, for those that are given.
@@ -78,7 +77,7 @@ pub struct Structure {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub number: Option<u32>,
     /// Modes of a flexible body.
-    #[serde(default, rename = "mode", skip_serializing_if = "are_found")]
+    #[serde(default, rename = "mode")]
     pub modes: Vec<StructureMode>,
 }
 
@@ -189,17 +188,6 @@ pub struct StructureMode {
     pub initial_rate: f64,
     /// External generalised force as a formula of time.
     pub force: Option<String>,
-    /// Shape of a computed mode, which has no file.
-    #[serde(skip)]
-    pub table: Option<ModeTable>,
-    /// Description of a computed mode for reports.
-    #[serde(skip)]
-    pub told: String,
-}
-
-/// True for computed modes, which are not written to case files.
-fn are_found(modes: &[StructureMode]) -> bool {
-    modes.iter().any(|mode| mode.table.is_some())
 }
 
 impl Freedom {
@@ -241,8 +229,6 @@ impl StructureMode {
             initial: 0.0,
             initial_rate: 0.0,
             force: None,
-            table: None,
-            told: String::new(),
         }
     }
 }
@@ -280,13 +266,6 @@ impl Structure {
             number: None,
             modes: Vec::new(),
         }
-    }
-
-    /// The structure without computed modes.
-    pub fn as_given(&self) -> Self {
-        let mut given = self.clone();
-        given.modes.retain(|mode| mode.table.is_none());
-        given
     }
 
     /// Coordinates that are unknowns, in the order of the model; empty for modal models, all of whose modes are

@@ -76,7 +76,11 @@ impl<const D: usize> CloudSpec<D> {
 
     /// The values of the tables `[cloud]` and `[boundary]` of a case. The spacing of the case must be resolved.
     pub fn of_case(case: &Case) -> Self {
-        let (cloud, s) = (&case.cloud, &case.boundary);
+        Self::of(&case.cloud, &case.boundary)
+    }
+
+    /// The cloud that the tables `[cloud]` and `[boundary]` describe.
+    pub fn of(cloud: &case::Cloud, s: &case::Sides) -> Self {
         let sides = [[s.x_min, s.x_max], [s.y_min, s.y_max], [s.z_min, s.z_max]];
         let boxes =
             cloud.boxes.iter().map(|b| SourceBox { bounds: bounds(&b.min, &b.max), spacing: b.spacing.0 }).collect();

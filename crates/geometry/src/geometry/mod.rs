@@ -48,7 +48,7 @@ pub use sampling::Chain;
 pub use shell::{Edge, Exact, Shell};
 pub use surface::{Element, Nearest, Projection, Skin, Surface};
 
-use crate::case::{Body, Case, Naca, ProfileSides, Shape, numbers_of, open_regular};
+use crate::case::{Body, Case, Length, Naca, ProfileSides, Shape, numbers_of, open_regular};
 use crate::math::{Bounds, Vector};
 use std::f64::consts::PI;
 use std::fs::File;
@@ -261,20 +261,7 @@ fn load_shell(name: &str, body: &Body, folder: &Path, notes: &mut Vec<String>) -
             AnyShell::Plane(primitive::ellipse([0.5 * a, 0.5 * b]))
         }
         Shape::Sphere { radius } => AnyShell::Space(primitive::sphere(positive(&place, "radius", radius.0)?)),
-        Shape::Box { size } => {
-            let size: Vec<f64> = size.iter().map(|l| positive(&place, "size", l.0)).collect::<Result<_, _>>()?;
-            match size[..] {
-                [a, b] => {
-                    let corners = primitive::rectangle([a, b]);
-                    AnyShell::Plane(outline::polygon(&place, &corners, POLYGON_CREASE, notes)?)
-                }
-                [a, b, c] => AnyShell::Space(primitive::cuboid([a, b, c])),
-                _ => {
-                    let what = format!("`size` has {} numbers", size.len());
-                    return Err(GeometryError::refused(place, what, "give two (2-D) or three (3-D)"));
-                }
-            }
-        }
+        Shape::Box { size } => box_shell(&place, size, notes)?,
         Shape::Surface(file) => {
             let within = body.weld.map(|l| l.0 / body.placement.scale);
             let soup = mesh::read(file, opened(folder, file)?, notes)?;
@@ -304,6 +291,22 @@ fn load_shell(name: &str, body: &Body, folder: &Path, notes: &mut Vec<String>) -
             AnyShell::Space(loft::ellipsoid(primitive::sphere(1.0), [0.5 * a?, 0.5 * b?, 0.5 * c?]))
         }
     })
+}
+
+/// A rectangle of two sides, or a cuboid of three.
+fn box_shell(place: &str, size: &[Length], notes: &mut Vec<String>) -> Result<AnyShell, GeometryError> {
+    let size: Vec<f64> = size.iter().map(|l| positive(place, "size", l.0)).collect::<Result<_, _>>()?;
+    match size[..] {
+        [a, b] => {
+            let corners = primitive::rectangle([a, b]);
+            Ok(AnyShell::Plane(outline::polygon(place, &corners, POLYGON_CREASE, notes)?))
+        }
+        [a, b, c] => Ok(AnyShell::Space(primitive::cuboid([a, b, c]))),
+        _ => {
+            let what = format!("`size` has {} numbers", size.len());
+            Err(GeometryError::refused(place, what, "give two (2-D) or three (3-D)"))
+        }
+    }
 }
 
 /// The section at one end of a wing, from its NACA designation or its file; `None` where neither is given.

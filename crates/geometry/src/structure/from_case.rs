@@ -42,7 +42,7 @@ impl<const D: usize> Structure<D> {
         let (units, stream) = (case.flow.units(), case.flow.reference().mach);
         let builder = Builder { case, data, frame, units, stream, b };
         match data.model {
-            StructureModel::Modal | StructureModel::OwnModes => builder.modes(),
+            StructureModel::Modal => builder.modes(),
             StructureModel::Floating => builder.floating(),
             _ if D == 2 => builder.plane(),
             _ => builder.space(),

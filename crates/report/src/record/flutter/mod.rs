@@ -8,6 +8,7 @@ mod numbers;
 pub mod remedy;
 mod shape;
 mod state_space;
+pub mod tables;
 mod wall_motion;
 
 pub use boundary::{Boundary, CaseReference, FlutterAt, Trim, Warning};

@@ -6,11 +6,12 @@ mod grid;
 mod loads;
 mod periodic;
 mod polar;
+mod polar_table;
 mod reference;
 mod structures;
 
 use serde::ser::{Error, SerializeMap};
-use serde::{Deserialize, Serialize, Serializer};
+use serde::{Deserialize, Deserializer, Serialize, Serializer};
 use serde_json::{Map, Value};
 
 use crate::math::digits::short;
@@ -26,6 +27,7 @@ pub use periodic::{
     MarchingCheck, Periodic, PeriodicLoads,
 };
 pub use polar::PolarPoint;
+pub use polar_table::write_polar;
 pub use reference::{ReferenceValues, list};
 pub use structures::{ProbeEnd, SolidEnd, Structures};
 
@@ -89,8 +91,9 @@ const KEYS: [&str; 56] = [
     "phases",
 ];
 
-/// What a run found and what it took.
-#[derive(Clone, Debug, Deserialize)]
+/// What a run found and what it took: all sections in one table.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+#[serde(remote = "Self")]
 pub struct Summary {
     /// What was computed, and what results refer to.
     #[serde(flatten)]
@@ -121,41 +124,19 @@ pub struct Summary {
     pub cost: Cost,
 }
 
-/// The sections that are flat in the file, and what stands beside them.
-#[derive(Serialize)]
-struct Sections<'a> {
-    event: &'static str,
-    #[serde(flatten)]
-    conditions: &'a Conditions,
-    #[serde(flatten)]
-    convergence: &'a Progress,
-    #[serde(flatten)]
-    loads: &'a Loads,
-    #[serde(flatten)]
-    grid: &'a GridConvergence,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    error_bars: &'a Option<ErrorBars>,
-    #[serde(skip_serializing_if = "<[PolarPoint]>::is_empty")]
-    polar: &'a [PolarPoint],
-    #[serde(flatten)]
-    periodic: &'a Periodic,
-    #[serde(flatten)]
-    structures: &'a Structures,
-    #[serde(flatten)]
-    cost: &'a Cost,
-}
-
-/// All sections in one table, with the keys in the order that readers of the file know.
+/// The keys are in the order that readers of the file know, not section by section.
 impl Serialize for Summary {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        let Self { conditions, convergence, loads, grid, error_bars, polar, periodic, structures, cost } = self;
-        let event = "summary";
-        let all =
-            Sections { event, conditions, convergence, loads, grid, error_bars, polar, periodic, structures, cost };
-        let Value::Object(all) = serde_json::to_value(all).map_err(S::Error::custom)? else {
-            return Err(S::Error::custom("sections are tables"));
-        };
+        let sections = Self::serialize(self, serde_json::value::Serializer).map_err(S::Error::custom)?;
+        let Value::Object(mut all) = sections else { return Err(S::Error::custom("sections are tables")) };
+        all.insert("event".to_owned(), "summary".into());
         in_order(&all, serializer)
+    }
+}
+
+impl<'de> Deserialize<'de> for Summary {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        Self::deserialize(deserializer)
     }
 }
 

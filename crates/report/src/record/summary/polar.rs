@@ -1,7 +1,7 @@
 //! Points of a polar.
 use serde::{Deserialize, Serialize};
 
-use crate::case::Case;
+use crate::case::Flow;
 use crate::math::digits::{fixed, short};
 use crate::observe::loads::Coefficients;
 
@@ -40,11 +40,11 @@ pub struct PolarPoint {
 }
 
 impl PolarPoint {
-    /// A point of `case` of which nothing is known yet.
-    pub fn of(case: &Case) -> Self {
+    /// The point in the free stream `flow`, of which nothing is known yet.
+    pub fn of(flow: &Flow) -> Self {
         Self {
-            mach: case.flow.reference().mach,
-            alpha_deg: case.flow.alpha.degrees(),
+            mach: flow.reference().mach,
+            alpha_deg: flow.alpha.degrees(),
             loads: None,
             loads_momentum_balance: None,
             loads_error: None,

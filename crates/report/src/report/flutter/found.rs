@@ -1,11 +1,11 @@
 //! `flutter.json` and `v-g.csv` of a folder, as the page and its charts read them.
 use super::super::files::{Csv, RunFolder};
 use crate::case::Matching;
+use crate::record::flutter::tables::{HISTORY, HISTORY_COLUMNS, motion_of};
 use crate::record::flutter::{Boundary, FlutterAt, FlutterRow, MotionRow};
 
-/// Tables of a run.
+/// The boundary of a run.
 const SUMMARY: &str = "flutter.json";
-const HISTORY: &str = "v-g.csv";
 
 /// The boundary in a folder with the motions of its table, or why it cannot be read.
 pub(super) fn read(run: &RunFolder) -> Result<Boundary, String> {
@@ -69,33 +69,10 @@ pub(super) fn place_of(at: &FlutterAt, crossing: &FlutterRow) -> f64 {
     }
 }
 
-/// Rows of the table of motions, each with its Mach number; columns that the table lacks are NaN.
+/// Rows of the table of motions, each with its Mach number.
 fn motions(table: &Csv) -> Vec<(f64, MotionRow)> {
-    let numbers = |name: &str| table.numbers(name).unwrap_or_default();
-    let names = ["mach", "mode", "speed_ratio", "speed", "equivalent_airspeed", "damping_g", "frequency"];
-    let more = ["eigenvalue_re", "eigenvalue_im", "density", "dynamic_pressure", "k"];
-    let (first, last) = (names.map(numbers), more.map(numbers));
+    let columns = HISTORY_COLUMNS.map(|name| table.numbers(name).unwrap_or_default());
     let branches = table.column("branch").unwrap_or_default();
-    let row = |k: usize| {
-        let at = |values: &Vec<f64>| values.get(k).copied().unwrap_or(f64::NAN);
-        let [mach, mode, speed_ratio, speed, equivalent_airspeed, damping, frequency] = first.each_ref().map(at);
-        let [re, im, density, dynamic_pressure, reduced_frequency] = last.each_ref().map(at);
-        let branch = branches.get(k).map_or_else(|| format!("mode {mode}"), |name| (*name).to_owned());
-        let motion = MotionRow {
-            branch,
-            mode: Some(mode as usize).filter(|_| mode.is_finite()),
-            speed_ratio,
-            speed,
-            equivalent_airspeed: Some(equivalent_airspeed).filter(|v| v.is_finite()),
-            damping,
-            frequency,
-            eigenvalue: [re, im],
-            density,
-            dynamic_pressure,
-            reduced_frequency,
-            altitude: None,
-        };
-        (mach, motion)
-    };
-    (0..table.rows.len()).map(row).collect()
+    let row = |k: usize| columns.each_ref().map(|column| column.get(k).copied().unwrap_or(f64::NAN));
+    (0..table.rows.len()).map(|k| motion_of(row(k), branches.get(k).copied())).collect()
 }

@@ -3,11 +3,10 @@
 //! The longest stable step goes with the distance of particles as the body is deformed: in an impact that squeezes its foot to a third it
 //! falls to a third, and where particles are sheared past one another to a twentieth. What a march takes is seen on the body itself where
 //! that is over soon, else on one with fewer particles, whose steps are longer by the ratio of the steps at rest.
-use std::path::Path;
 use std::time::{Duration, Instant};
 
-use crate::case::{Case, Length, Temporal};
-use crate::problem::solids::{Built, build};
+use crate::case::{Case, Temporal};
+use crate::problem::solids::{Built, Filling};
 use crate::time::symplectic::{Plan, Symplectic};
 use crate::time::{Integrator, Past};
 
@@ -24,14 +23,14 @@ pub(super) struct Steps {
     pub(super) is_known: bool,
 }
 
-/// Steps of the explicit march of the structure `built` of a case whose files lie in `input`; `None` of other studies.
-pub(super) fn steps<const D: usize>(case: &Case, input: &Path, built: &Built<D>) -> Option<Steps> {
+/// Steps of the explicit march of the structure `built` of a case; `None` of other studies.
+pub(super) fn steps<const D: usize>((case, filling): (&Case, Filling<'_>), built: &Built<D>) -> Option<Steps> {
     let Temporal::Explicit(plan) = &case.time else { return None };
     let plan = Plan { cfl: plan.cfl, until: plan.until?.0 };
     let at_rest = step_at_rest(built);
     let mut least = plan.until / (plan.cfl * at_rest);
     for factor in FACTORS {
-        let coarse = (factor > 1.0).then(|| build::<D>(&coarser(case, factor), input));
+        let coarse = (factor > 1.0).then(|| filling.coarser(factor).build::<D>());
         let body = match &coarse {
             None => built,
             Some(Ok(body)) => body,
@@ -62,15 +61,4 @@ fn march<const D: usize>(body: &Built<D>, plan: Plan) -> Result<f64, f64> {
 
 fn step_at_rest<const D: usize>(body: &Built<D>) -> f64 {
     body.structure.solid.stable_step(&vec![[0.0; D]; body.structure.solid.len()])
-}
-
-/// The case with `factor` times the distance of particles in its solids.
-fn coarser(case: &Case, factor: f64) -> Case {
-    let mut case = case.clone();
-    for solid in case.bodies.iter_mut().filter_map(|b| b.solid.as_mut()) {
-        let fewer = |count: u32| (f64::from(count - 1) / factor).round() as u32 + 1;
-        solid.spacing = solid.spacing.map(|h| Length(factor * h.0));
-        solid.through = solid.through.map(fewer);
-    }
-    case
 }

@@ -3,18 +3,20 @@
 //! Claims share runs, also with those of other cases that they compare with: the store has them, in memory or in a folder where a later
 //! walk finds them. A case that does not run fails its claims, with the reason in the place of the source, and the walk goes on.
 mod folder;
+mod measure;
 mod store;
 
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use super::measure::{self, Measured, Value};
 use crate::case::Case;
 use crate::observe::loads::Coefficients;
 use crate::study::Monitor;
 use crate::verify::calibration::{KnownLoad, holding, median_ratio};
+use crate::verify::metric::{BarMetric, FlutterMetric, ForceMetric, StudyMetric};
 use crate::verify::{Claim, ClaimRow, Metric, Sample, Table, metrics};
 use folder::{FILES, respaced, unreadable};
+use measure::{Measured, Value};
 use store::{Found, Job, Kind, Store};
 
 pub use folder::Folder;
@@ -180,10 +182,10 @@ impl Walk {
             };
         }
         match claim.metric {
-            m if m.is_of_flutter() => self.boundary(claim, folder, monitor),
-            m if m.is_of_forces() => self.forces(claim, folder, monitor),
-            m if m.needs_cases() => self.calibrate(claim, folder, monitor),
-            m if m.needs_study() => self.study(claim, folder, monitor),
+            Metric::Flutter(metric) => self.boundary((metric, claim), folder, monitor),
+            Metric::Force(metric) => self.forces((metric, claim), folder, monitor),
+            Metric::Bar(metric) => self.calibrate((metric, claim), folder, monitor),
+            Metric::Study(metric) => self.study((metric, claim), folder, monitor),
             _ => self.flow(claim, folder, monitor),
         }
     }
@@ -202,35 +204,42 @@ impl Walk {
     }
 
     /// Order or limit of a metric over the spacings of the study.
-    fn study(&mut self, claim: &Claim, folder: &Folder, monitor: &mut dyn Monitor) -> Value {
+    fn study(&mut self, (metric, claim): (StudyMetric, &Claim), folder: &Folder, monitor: &mut dyn Monitor) -> Value {
         let Some(study) = &folder.claims.study else { return Err("there is no `[study]`".into()) };
         let mut values = Vec::new();
         for &spacing in &study.spacings {
             let key = self.ensure(Kind::Flow, folder, &respaced(&folder.case, spacing, study), monitor);
             values.push(self.store.flow(&key)?.value(claim, &folder.path, &[])?);
         }
-        let found = match claim.metric {
-            Metric::Order | Metric::CpRmsOrder => metrics::observed_order(&study.spacings, &values),
-            _ => metrics::limit(&study.spacings, &values).map(|(limit, _)| limit),
+        let found = match metric {
+            StudyMetric::Order | StudyMetric::CpRmsOrder => metrics::observed_order(&study.spacings, &values),
+            StudyMetric::ExtrapolatedCl | StudyMetric::ExtrapolatedCd => {
+                metrics::limit(&study.spacings, &values).map(|(limit, _)| limit)
+            }
         };
         found.ok_or_else(|| format!("the values {values:?} have no order or limit"))
     }
 
     /// The metric of a flutter boundary, compared with the one that the claim names.
-    fn boundary(&mut self, claim: &Claim, folder: &Folder, monitor: &mut dyn Monitor) -> Value {
+    fn boundary(
+        &mut self,
+        (metric, claim): (FlutterMetric, &Claim),
+        folder: &Folder,
+        monitor: &mut dyn Monitor,
+    ) -> Value {
         let other = claim.other.as_ref().map(|name| self.named(name, folder)).transpose()?;
         let other = other.map(|other| self.ensure(Kind::Flutter, &other, &other.case, monitor));
         let own = self.ensure(Kind::Flutter, folder, &folder.case, monitor);
         let numbers = |key: &str| match self.store.at(key)? {
-            Found::Flutter(numbers) => Ok(numbers),
+            Found::Flutter(boundary) => Ok(&**boundary),
             _ => Err(String::from("the case has no flutter boundary")),
         };
         let other = other.as_deref().map(numbers).transpose()?;
-        measure::boundary::value(numbers(&own)?, other, claim)
+        measure::boundary::value(numbers(&own)?, other, (metric, claim))
     }
 
     /// Forces of small motions in the case of `folder` and in those that the claim names, against a table.
-    fn forces(&mut self, claim: &Claim, folder: &Folder, monitor: &mut dyn Monitor) -> Value {
+    fn forces(&mut self, (metric, claim): (ForceMetric, &Claim), folder: &Folder, monitor: &mut dyn Monitor) -> Value {
         let all: Vec<Folder> = std::iter::once(folder.clone()).chain(self.others(claim, folder)?).collect();
         let keys: Vec<String> = all.iter().map(|one| self.ensure(Kind::Forces, one, &one.case, monitor)).collect();
         let numbers = |key: &String| match self.store.at(key)? {
@@ -239,11 +248,11 @@ impl Walk {
         };
         let forces = keys.iter().map(numbers).collect::<Result<Vec<_>, String>>()?;
         let sections: Vec<_> = all.iter().map(|one| &one.case).zip(forces).collect();
-        measure::forces::value(&sections, claim, &folder.path)
+        measure::forces::value(&sections, (metric, claim), &folder.path)
     }
 
     /// Runs every case of the table of `claim`, and holds their error bars against the exact loads.
-    fn calibrate(&mut self, claim: &Claim, folder: &Folder, monitor: &mut dyn Monitor) -> Value {
+    fn calibrate(&mut self, (metric, claim): (BarMetric, &Claim), folder: &Folder, monitor: &mut dyn Monitor) -> Value {
         let name = claim.file.as_deref().ok_or("the claim names no `file` of loads")?;
         let wrong = |e: &dyn std::fmt::Display| format!("`{name}`: {e}");
         let text = fs::read_to_string(folder.path.join(name)).map_err(|e| wrong(&e))?;
@@ -257,7 +266,7 @@ impl Walk {
             let bars = numbers.half_widths.ok_or_else(|| format!("`{}` has no error bars", row.case))?;
             let found =
                 row.found(three(&numbers.loads), bars).ok_or_else(|| wrong(&format!("no load `{}`", row.load)))?;
-            if claim.metric == Metric::BarsHolding {
+            if metric == BarMetric::BarsHolding {
                 monitor.note(&format!(
                     "{}: {} error {:.1e}, bar {:.1e}",
                     row.case, row.load, found.error, found.half_width
@@ -265,7 +274,10 @@ impl Walk {
             }
             loads.push(found);
         }
-        let found = if claim.metric == Metric::BarsHolding { holding(&loads) } else { median_ratio(&loads) };
+        let found = match metric {
+            BarMetric::BarsHolding => holding(&loads),
+            BarMetric::BarOverError => median_ratio(&loads),
+        };
         found.ok_or_else(|| wrong(&"no loads"))
     }
 

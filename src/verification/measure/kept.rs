@@ -1,11 +1,11 @@
 //! A finished run as it is measured, and as it is kept in a file.
 use std::borrow::Cow;
 
-use super::super::session::Session;
 use super::{Measured, Numbers};
 use crate::case::Case;
 use crate::math::Vector;
 use crate::observe::{Array, Checkpoint, Field};
+use crate::run::Session;
 use crate::study::Snapshot;
 use crate::verify::{Loops, Wall};
 

@@ -1,14 +1,14 @@
-//! The tables of `alula flutter`, and what their columns hold.
+//! A flutter boundary as tables: `flutter.csv`, `v-g.csv`, `flutter-doubts.csv` and `lco.csv`.
 use std::path::Path;
 
+use super::{Boundary, Doubt, FlutterRow, MotionRow};
 use crate::observe::columns::{self, Scale};
-use crate::observe::table::{Entry, write_csv};
-use crate::problem::RunError;
-use crate::record::flutter::{Boundary, Doubt, FlutterRow, MotionRow};
+use crate::observe::table::{Entry, FileError, write_csv};
 
-/// Their names.
+/// Names of the tables.
 const CROSSINGS: &str = "flutter.csv";
-const HISTORY: &str = "v-g.csv";
+/// Table of the motions.
+pub const HISTORY: &str = "v-g.csv";
 const DOUBTS: &str = "flutter-doubts.csv";
 const CYCLES: &str = "lco.csv";
 
@@ -82,7 +82,8 @@ const CYCLE_COLUMNS: [&str; 18] = [
     "dynamic_pressure",
     "altitude",
 ];
-const HISTORY_COLUMNS: [&str; 15] = [
+/// Columns of the table of motions.
+pub const HISTORY_COLUMNS: [&str; 15] = [
     "mach",
     "mode",
     "speed_ratio",
@@ -101,7 +102,7 @@ const HISTORY_COLUMNS: [&str; 15] = [
 ];
 
 /// Writes all tables into a folder.
-pub(super) fn write_tables(boundary: &Boundary, out: &Path) -> Result<(), RunError> {
+pub fn write_tables(boundary: &Boundary, out: &Path) -> Result<(), FileError> {
     let crossings = boundary.flutter.iter().flat_map(|at| at.crossings.iter().map(|c| crossing(at.mach, c)));
     write_csv(&out.join(CROSSINGS), &CROSSING_COLUMNS, crossings)?;
     let motions = boundary.flutter.iter().flat_map(|at| at.motions.iter().map(|m| motion(at.mach, m)));
@@ -117,13 +118,13 @@ pub(super) fn write_tables(boundary: &Boundary, out: &Path) -> Result<(), RunErr
 }
 
 /// Writes what the columns of the tables hold.
-pub(super) fn describe_tables(boundary: &Boundary, out: &Path) -> Result<(), RunError> {
+pub fn describe_tables(boundary: &Boundary, out: &Path) -> Result<(), FileError> {
     let Some(at) = boundary.flutter.first() else { return Ok(()) };
     let scale = Scale { dimensional: at.dimensional, dimension: at.dimension };
-    Ok(columns::describe_tables(out, scale, &[])?)
+    columns::describe_tables(out, scale, &[])
 }
 
-fn write_cycles(boundary: &Boundary, file: &Path) -> Result<(), RunError> {
+fn write_cycles(boundary: &Boundary, file: &Path) -> Result<(), FileError> {
     let rows = boundary.lco.iter().map(|c| {
         vec![
             Entry::from(c.mach),
@@ -146,7 +147,7 @@ fn write_cycles(boundary: &Boundary, file: &Path) -> Result<(), RunError> {
             number(c.altitude),
         ]
     });
-    Ok(write_csv(file, &CYCLE_COLUMNS, rows)?)
+    write_csv(file, &CYCLE_COLUMNS, rows)
 }
 
 fn number(x: Option<f64>) -> Entry {
@@ -199,6 +200,29 @@ fn motion(mach: f64, m: &MotionRow) -> Vec<Entry> {
     let head = [mach, mode].into_iter().chain(numbers).chain(stream).map(Entry::from);
     let branch = std::iter::once(Entry::from(m.branch.as_str()));
     head.chain(branch).chain([Entry::from(m.speed), number(m.equivalent_airspeed)]).collect()
+}
+
+/// The Mach number and the motion of a row of the table of motions; columns that a table lacks are NaN, and a motion without a branch is named
+/// after its mode.
+pub fn motion_of(row: [f64; HISTORY_COLUMNS.len()], branch: Option<&str>) -> (f64, MotionRow) {
+    let known = |value: f64| Some(value).filter(|v| v.is_finite());
+    let [mach, mode, speed_ratio, k, _, damping, frequency, re, im, density, dynamic_pressure, altitude, _, speed, eas] =
+        row;
+    let motion = MotionRow {
+        branch: branch.map_or_else(|| format!("mode {mode}"), str::to_owned),
+        mode: known(mode).map(|mode| mode as usize),
+        speed_ratio,
+        speed,
+        equivalent_airspeed: known(eas),
+        damping,
+        frequency,
+        eigenvalue: [re, im],
+        density,
+        dynamic_pressure,
+        reduced_frequency: k,
+        altitude: known(altitude),
+    };
+    (mach, motion)
 }
 
 fn doubt(mach: f64, d: &Doubt) -> Vec<Entry> {

@@ -3,13 +3,14 @@ use serde::{Deserialize, Serialize};
 
 use super::Value;
 use crate::study::{ModeRow, ProbeRow, SolidSummary};
+use crate::verify::metric::{EndMetric, SolidMetric};
 use crate::verify::{Claim, Metric};
 
 /// The numbers of a structure alone that claims are about.
 #[derive(Clone, Debug, Serialize, Deserialize)]
-pub(in crate::run) struct Numbers {
+pub(in crate::verification) struct Numbers {
     /// Solid particles.
-    pub(in crate::run) particles: usize,
+    pub(in crate::verification) particles: usize,
     /// True where it came to its end.
     converged: bool,
     /// Natural modes.
@@ -33,26 +34,36 @@ impl From<&SolidSummary> for Numbers {
 }
 
 /// The metric of `claim`.
-pub(in crate::run) fn value(s: &Numbers, claim: &Claim) -> Value {
+pub(in crate::verification) fn value(s: &Numbers, claim: &Claim) -> Value {
     let named = claim.coordinate.as_deref().ok_or("the claim names no `coordinate`");
     match claim.metric {
-        Metric::ModeOmega => {
+        Metric::Solid(SolidMetric::ModeOmega) => {
             let number = named?.parse::<usize>().ok().and_then(|k| k.checked_sub(1));
             let mode = number.and_then(|k| s.modes.get(k)).ok_or("there is no mode with that number")?;
             Ok(mode.omega)
         }
-        Metric::ProbeDisplacement => {
+        Metric::Solid(SolidMetric::ProbeDisplacement) => {
             let (name, axis) = named?.rsplit_once('.').ok_or("`coordinate` is a probe and an axis, `tip.y`")?;
             let probe = s.probes.iter().find(|p| p.name == name).ok_or("there is no probe of that name")?;
             let axis = ["x", "y", "z"].iter().position(|a| *a == axis).ok_or("axes are x, y and z")?;
             probe.displacement.get(axis).copied().ok_or_else(|| "the probe has no such axis".into())
         }
-        Metric::ProbeAmplitude => wave(s, named?).map(|w| w[0]),
-        Metric::ProbePhase => wave(s, named?).map(|w| w[1]),
-        Metric::LedgerOpen => s.open.map(f64::abs).ok_or_else(|| "the run kept no ledger".into()),
-        Metric::Converged => Ok(f64::from(u8::from(s.converged))),
-        Metric::Particles => Ok(s.particles as f64),
-        other => Err(format!("`{}` is not measured of structures alone", other.name())),
+        Metric::Solid(SolidMetric::ProbeAmplitude) => wave(s, named?).map(|w| w[0]),
+        Metric::Solid(SolidMetric::ProbePhase) => wave(s, named?).map(|w| w[1]),
+        Metric::Solid(SolidMetric::LedgerOpen) => s.open.map(f64::abs).ok_or_else(|| "the run kept no ledger".into()),
+        Metric::End(EndMetric::Converged) => Ok(f64::from(u8::from(s.converged))),
+        Metric::End(EndMetric::Particles) => Ok(s.particles as f64),
+        // no rest, so that every metric of structures has its arm
+        Metric::End(_)
+        | Metric::Periodic(_)
+        | Metric::Thin(_)
+        | Metric::Comparison(_)
+        | Metric::Field(_)
+        | Metric::Structure(_)
+        | Metric::Flutter(_)
+        | Metric::Force(_)
+        | Metric::Study(_)
+        | Metric::Bar(_) => Err(format!("`{}` is not measured of structures alone", claim.metric.name())),
     }
 }
 

@@ -4,36 +4,36 @@ use std::f64::consts::PI;
 use super::{Measured, Value, no_other};
 use crate::case::Structure;
 use crate::observe::structure::{CoordinateSummary, StructureSummary};
-use crate::verify::{Claim, Metric};
+use crate::verify::Claim;
+use crate::verify::metric::StructureMetric;
 
 impl Measured {
-    /// The metric of `claim`, one of those of structures.
-    pub(super) fn of_structure(&self, claim: &Claim, others: &[&Self]) -> Value {
+    /// A metric of structures; `claim` names the coordinate.
+    pub(super) fn of_structure(&self, metric: StructureMetric, claim: &Claim, others: &[&Self]) -> Value {
         let own = || self.coordinate(claim);
-        match claim.metric {
-            Metric::StructureMean => own()?.mean.ok_or_else(unfinished),
-            Metric::StructureLargest => Ok(own()?.largest),
-            Metric::StructureAmplitude => self.amplitude(claim),
-            Metric::StructureFrequency => self.frequency(claim),
-            Metric::StructureGrowthRate => own()?.growth_rate.ok_or_else(no_oscillation),
-            Metric::StructureDampingRatio => own()?.damping_ratio.ok_or_else(no_oscillation),
-            Metric::WorkLedger => Ok(self.first_structure()?.lost_power),
-            Metric::ThinFrequency => self.thin_value(others, |s| s.frequency(claim)),
-            Metric::ThinGrowthRate => self.thin_value(others, |s| s.growth(claim)),
-            Metric::EquilibriumAngleError => {
+        match metric {
+            StructureMetric::StructureMean => own()?.mean.ok_or_else(unfinished),
+            StructureMetric::StructureLargest => Ok(own()?.largest),
+            StructureMetric::StructureAmplitude => self.amplitude(claim),
+            StructureMetric::StructureFrequency => self.frequency(claim),
+            StructureMetric::StructureGrowthRate => own()?.growth_rate.ok_or_else(no_oscillation),
+            StructureMetric::StructureDampingRatio => own()?.damping_ratio.ok_or_else(no_oscillation),
+            StructureMetric::WorkLedger => Ok(self.first_structure()?.lost_power),
+            StructureMetric::ThinFrequency => self.thin_value(others, |s| s.frequency(claim)),
+            StructureMetric::ThinGrowthRate => self.thin_value(others, |s| s.growth(claim)),
+            StructureMetric::EquilibriumAngleError => {
                 let (angle, linear) = (self.angle(claim)?, self.linear(others)?);
                 let expected = self.case.flow.alpha.0 * linear / (1.0 - linear);
                 Ok(angle / expected - 1.0)
             }
-            Metric::DivergenceSpeedError => {
+            StructureMetric::DivergenceSpeedError => {
                 let angle = self.angle(claim)?;
                 // the angle tells that the speed is the square root of θ/(θ + α) of that at which the section diverges
                 let found = angle / (angle + self.case.flow.alpha.0);
                 Ok((self.linear(others)? / found).sqrt() - 1.0)
             }
-            Metric::FrequencyStepOrder => self.step_order(others, |s| s.frequency(claim)),
-            Metric::AmplitudeStepOrder => self.step_order(others, |s| s.amplitude(claim)),
-            _ => Err("this is not measured of a run".into()),
+            StructureMetric::FrequencyStepOrder => self.step_order(others, |s| s.frequency(claim)),
+            StructureMetric::AmplitudeStepOrder => self.step_order(others, |s| s.amplitude(claim)),
         }
     }
 

@@ -1,10 +1,9 @@
 //! The table of the points of a polar.
 use std::path::Path;
 
+use super::PolarPoint;
 use crate::observe::loads::Coefficients;
-use crate::observe::table::{Entry, write_csv};
-use crate::problem::RunError;
-use crate::study::PolarPoint;
+use crate::observe::table::{Entry, FileError, write_csv};
 
 /// Name of the table in the run folder.
 const FILE: &str = "polar.csv";
@@ -34,9 +33,9 @@ const COLUMNS: [&str; 21] = [
 ];
 
 /// Writes the table of these points into the folder `out`.
-pub(super) fn write(points: &[PolarPoint], out: &Path) -> Result<(), RunError> {
+pub fn write_polar(points: &[PolarPoint], out: &Path) -> Result<(), FileError> {
     let rows = points.iter().enumerate().map(|(k, point)| row(k + 1, point));
-    Ok(write_csv(&out.join(FILE), &COLUMNS, rows)?)
+    write_csv(&out.join(FILE), &COLUMNS, rows)
 }
 
 /// Row of the point `number`, counted from 1.

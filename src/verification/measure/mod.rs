@@ -20,6 +20,7 @@ use crate::observe::cycles::Cycles;
 use crate::physics::{Gas, Primitive};
 use crate::scheme::start::free_stream;
 use crate::study::{LastPeriod, Snapshot};
+use crate::verify::metric::{ComparisonMetric, EndMetric, FieldMetric, PeriodicMetric, ThinMetric};
 use crate::verify::metrics;
 use crate::verify::wall::{Wall, contains};
 use crate::verify::{Claim, Curve, FieldTruth, Loops, Metric, Table, WallTruth, loops};
@@ -66,120 +67,116 @@ fn designed_thickness(case: &Case) -> Option<f64> {
 pub(super) type Value = Result<f64, String>;
 
 impl Measured {
-    /// The metric of `claim`, that needs one run only (and `others` where the claim names other cases).
+    /// The metric of `claim`, that needs one run only (and `others` where the claim names other cases); of a study, what it measures at each
+    /// spacing.
     pub(super) fn value(&self, claim: &Claim, folder: &Path, others: &[&Self]) -> Value {
-        let metric = claim.metric;
-        let found = self
-            .of_the_end(metric)
-            .or_else(|| self.of_periods(metric))
-            .or_else(|| self.of_thin_sections(metric, others))
-            .or_else(|| self.beside_others(claim, folder, others.first().copied()))
-            .or_else(|| self.of_fields(claim, folder));
-        found.unwrap_or_else(|| match metric {
-            Metric::ModeOmega
-            | Metric::ProbeDisplacement
-            | Metric::ProbeAmplitude
-            | Metric::ProbePhase
-            | Metric::LedgerOpen => Err("the case has a gas: this is measured of structures alone".into()),
-            _ if metric.is_of_flutter() => Err("this is measured of a flutter boundary, not of a run".into()),
-            _ if metric.is_of_forces() => Err("this is measured of `[gaf]`, not of a run".into()),
-            _ if metric.needs_cases() => Err("the metric needs a table of cases".into()),
-            _ => self.of_structure(claim, others),
-        })
+        let metric = match claim.metric {
+            Metric::Study(metric) => metric.at_each_spacing(),
+            other => other,
+        };
+        match metric {
+            Metric::End(metric) => self.of_the_end(metric),
+            Metric::Periodic(metric) => self.of_periods(metric),
+            Metric::Thin(metric) => self.of_thin_sections(metric, others),
+            Metric::Comparison(metric) => self.beside_others(metric, (claim, folder), others.first().copied()),
+            Metric::Field(metric) => self.of_fields(metric, claim, folder),
+            Metric::Structure(metric) => self.of_structure(metric, claim, others),
+            Metric::Solid(_) => Err("the case has a gas: this is measured of structures alone".into()),
+            Metric::Flutter(_) => Err("this is measured of a flutter boundary, not of a run".into()),
+            Metric::Force(_) => Err("this is measured of `[gaf]`, not of a run".into()),
+            Metric::Bar(_) | Metric::Study(_) => Err("the metric needs other cases or spacings".into()),
+        }
     }
 
     /// Metrics of the summary: loads and convergence at the end of the run.
-    fn of_the_end(&self, metric: Metric) -> Option<Value> {
+    fn of_the_end(&self, metric: EndMetric) -> Value {
         let s = &self.numbers;
-        Some(match metric {
-            Metric::Cl | Metric::ExtrapolatedCl => Ok(s.loads.cl),
-            Metric::Cd | Metric::ExtrapolatedCd => Ok(s.loads.cd),
-            Metric::Cm => Ok(s.loads.cm),
-            Metric::CdPressure => s.loads_pressure.map(|c| c.cd).ok_or_else(no_viscosity),
-            Metric::CdFriction => s.loads_friction.map(|c| c.cd).ok_or_else(no_viscosity),
-            Metric::SeparationUpper => {
+        match metric {
+            EndMetric::Cl => Ok(s.loads.cl),
+            EndMetric::Cd => Ok(s.loads.cd),
+            EndMetric::Cm => Ok(s.loads.cm),
+            EndMetric::CdPressure => s.loads_pressure.map(|c| c.cd).ok_or_else(no_viscosity),
+            EndMetric::CdFriction => s.loads_friction.map(|c| c.cd).ok_or_else(no_viscosity),
+            EndMetric::SeparationUpper => {
                 s.separation_upper.ok_or_else(|| "friction turns nowhere on the upper side".into())
             }
-            Metric::ClMomentum => s.loads_momentum_balance.map(|c| c.cl).ok_or_else(no_balance),
-            Metric::CdMomentum => s.loads_momentum_balance.map(|c| c.cd).ok_or_else(no_balance),
-            Metric::CdBalance => s.loads_momentum_balance.map(|c| (c.cd - s.loads.cd).abs()).ok_or_else(no_balance),
-            Metric::ResidualDrop => s.residual_drop.ok_or_else(|| "a march has a residual in each step".into()),
-            Metric::Converged => Ok(f64::from(u8::from(s.succeeded))),
-            Metric::Particles => Ok(s.particles as f64),
-            Metric::MassDrift => s.drift.map(|[mass, _]| mass.abs()).ok_or_else(no_ledger),
-            Metric::EnergyDrift => s.drift.map(|[_, energy]| energy.abs()).ok_or_else(no_ledger),
-            Metric::ErrorL2Density | Metric::Order => {
+            EndMetric::ClMomentum => s.loads_momentum_balance.map(|c| c.cl).ok_or_else(no_balance),
+            EndMetric::CdMomentum => s.loads_momentum_balance.map(|c| c.cd).ok_or_else(no_balance),
+            EndMetric::CdBalance => s.loads_momentum_balance.map(|c| (c.cd - s.loads.cd).abs()).ok_or_else(no_balance),
+            EndMetric::ResidualDrop => s.residual_drop.ok_or_else(|| "a march has a residual in each step".into()),
+            EndMetric::Converged => Ok(f64::from(u8::from(s.succeeded))),
+            EndMetric::Particles => Ok(s.particles as f64),
+            EndMetric::MassDrift => s.drift.map(|[mass, _]| mass.abs()).ok_or_else(no_ledger),
+            EndMetric::EnergyDrift => s.drift.map(|[_, energy]| energy.abs()).ok_or_else(no_ledger),
+            EndMetric::ErrorL2Density => {
                 s.error_l2_density.ok_or_else(|| "the case starts from no exact solution".into())
             }
-            _ => return None,
-        })
+        }
     }
 
     /// Metrics of loads that repeat: harmonics of a motion, cycles of the flow itself.
-    fn of_periods(&self, metric: Metric) -> Option<Value> {
-        Some(match metric {
-            Metric::LiftAmplitude => self.lift().map(|c| c.norm()),
-            Metric::LiftPhase => self.lift().map(|c| c.arg().to_degrees()),
-            Metric::DragAmplitude => self.drag().map(|c| c.norm()),
-            Metric::DragPhase => self.drag().map(|c| c.arg().to_degrees()),
-            Metric::DragSecondHarmonic => Ok(harmonic(&self.loops.cd, 2).norm()),
-            Metric::Strouhal => self.cycles().map(|c| c.frequency * self.chord() / self.case.flow.reference().speed),
-            Metric::CycleSpread => self.cycles().map(|c| c.spread),
-            Metric::MeanCd => self.cycles().map(|c| c.mean_cd),
-            Metric::SwingCd => self.cycles().map(|c| c.amplitude_cd),
-            Metric::SwingCl => self.cycles().map(|c| c.amplitude_cl),
-            Metric::MeanCl => self.last_period().map(|p| p.mean_cl),
-            Metric::PeakCl => self.last_period().map(|p| p.peak_cl),
-            _ => return None,
-        })
+    fn of_periods(&self, metric: PeriodicMetric) -> Value {
+        match metric {
+            PeriodicMetric::LiftAmplitude => self.lift().map(|c| c.norm()),
+            PeriodicMetric::LiftPhase => self.lift().map(|c| c.arg().to_degrees()),
+            PeriodicMetric::DragAmplitude => self.drag().map(|c| c.norm()),
+            PeriodicMetric::DragPhase => self.drag().map(|c| c.arg().to_degrees()),
+            PeriodicMetric::DragSecondHarmonic => Ok(harmonic(&self.loops.cd, 2).norm()),
+            PeriodicMetric::Strouhal => {
+                self.cycles().map(|c| c.frequency * self.chord() / self.case.flow.reference().speed)
+            }
+            PeriodicMetric::CycleSpread => self.cycles().map(|c| c.spread),
+            PeriodicMetric::MeanCd => self.cycles().map(|c| c.mean_cd),
+            PeriodicMetric::SwingCd => self.cycles().map(|c| c.amplitude_cd),
+            PeriodicMetric::SwingCl => self.cycles().map(|c| c.amplitude_cl),
+            PeriodicMetric::MeanCl => self.last_period().map(|p| p.mean_cl),
+            PeriodicMetric::PeakCl => self.last_period().map(|p| p.peak_cl),
+        }
     }
 
     /// Metrics extrapolated to a section of no thickness.
-    fn of_thin_sections(&self, metric: Metric, others: &[&Self]) -> Option<Value> {
-        Some(match metric {
-            Metric::ThinLiftAmplitude => self.thin(others, Self::lift).map(|c| c.norm()),
-            Metric::ThinLiftPhase => self.thin(others, Self::lift).map(|c| c.arg().to_degrees()),
-            Metric::ThinMomentAmplitude => self.thin(others, Self::moment).map(|c| c.norm()),
-            Metric::ThinMomentPhase => self.thin(others, Self::moment).map(|c| c.arg().to_degrees()),
-            Metric::ThinForceAmplitude => self.thin(others, Self::force).map(|c| c.norm()),
-            Metric::ThinForcePhase => self.thin(others, Self::force).map(|c| c.arg().to_degrees()),
-            _ => return None,
-        })
+    fn of_thin_sections(&self, metric: ThinMetric, others: &[&Self]) -> Value {
+        match metric {
+            ThinMetric::ThinLiftAmplitude => self.thin(others, Self::lift).map(|c| c.norm()),
+            ThinMetric::ThinLiftPhase => self.thin(others, Self::lift).map(|c| c.arg().to_degrees()),
+            ThinMetric::ThinMomentAmplitude => self.thin(others, Self::moment).map(|c| c.norm()),
+            ThinMetric::ThinMomentPhase => self.thin(others, Self::moment).map(|c| c.arg().to_degrees()),
+            ThinMetric::ThinForceAmplitude => self.thin(others, Self::force).map(|c| c.norm()),
+            ThinMetric::ThinForcePhase => self.thin(others, Self::force).map(|c| c.arg().to_degrees()),
+        }
     }
 
     /// Metrics that compare with a file, an exact solution or the case `other`.
-    fn beside_others(&self, claim: &Claim, folder: &Path, other: Option<&Self>) -> Option<Value> {
-        Some(match claim.metric {
-            Metric::LiftLoopDifference => self.loop_difference(claim, folder, other, ("CL", |l| &l.cl)),
-            Metric::DragLoopDifference => self.loop_difference(claim, folder, other, ("CD", |l| &l.cd)),
-            Metric::LiftHarmonicError => other.ok_or_else(no_other).and_then(|other| self.lift_error(other)),
-            Metric::LiftMeanError => {
+    fn beside_others(&self, metric: ComparisonMetric, (claim, folder): (&Claim, &Path), other: Option<&Self>) -> Value {
+        match metric {
+            ComparisonMetric::LiftLoopDifference => self.loop_difference(claim, folder, other, ("CL", |l| &l.cl)),
+            ComparisonMetric::DragLoopDifference => self.loop_difference(claim, folder, other, ("CD", |l| &l.cd)),
+            ComparisonMetric::LiftHarmonicError => other.ok_or_else(no_other).and_then(|other| self.lift_error(other)),
+            ComparisonMetric::LiftMeanError => {
                 other.ok_or_else(no_other).and_then(|other| mean_error(&self.loops.cl, &other.loops.cl))
             }
-            Metric::CpRms | Metric::CpRmsOrder => self.cp_differences(claim, folder, other).and_then(|d| mean_of(&d)),
-            Metric::CpMaxDifference => self.cp_differences(claim, folder, other).and_then(|d| largest_of(&d)),
-            _ => return None,
-        })
+            ComparisonMetric::CpRms => self.cp_differences(claim, folder, other).and_then(|d| mean_of(&d)),
+            ComparisonMetric::CpMaxDifference => self.cp_differences(claim, folder, other).and_then(|d| largest_of(&d)),
+        }
     }
 
     /// Metrics of the gas and of the walls of this run alone, and of tables of its sections.
-    fn of_fields(&self, claim: &Claim, folder: &Path) -> Option<Value> {
-        Some(match claim.metric {
-            Metric::CfBlasiusRms => self.blasius_differences(claim).and_then(|d| mean_of(&d)),
-            Metric::CfBlasiusMax => self.blasius_differences(claim).and_then(|d| largest_of(&d)),
-            Metric::ProfileBlasiusRms => self.blasius_profile(claim),
-            Metric::SectionCpRms => self.section_differences(claim, folder).and_then(|d| mean_of(&d)),
-            Metric::WakeLength => self.wake_length(),
-            Metric::PitotPressure => self.pitot_pressure(),
-            Metric::StandOff => self.stand_off(),
-            Metric::ShockUpper => self.shock(claim, true),
-            Metric::ShockLower => self.shock(claim, false),
-            Metric::PanelPressure => self.panel_pressure(claim),
-            Metric::FreeStreamDeviation => self.free_stream_deviation(),
-            Metric::ShockPositionError => self.shock_position_error(),
-            Metric::WaveAngle => self.wave_angle(claim),
-            _ => return None,
-        })
+    fn of_fields(&self, metric: FieldMetric, claim: &Claim, folder: &Path) -> Value {
+        match metric {
+            FieldMetric::CfBlasiusRms => self.blasius_differences(claim).and_then(|d| mean_of(&d)),
+            FieldMetric::CfBlasiusMax => self.blasius_differences(claim).and_then(|d| largest_of(&d)),
+            FieldMetric::ProfileBlasiusRms => self.blasius_profile(claim),
+            FieldMetric::SectionCpRms => self.section_differences(claim, folder).and_then(|d| mean_of(&d)),
+            FieldMetric::WakeLength => self.wake_length(),
+            FieldMetric::PitotPressure => self.pitot_pressure(),
+            FieldMetric::StandOff => self.stand_off(),
+            FieldMetric::ShockUpper => self.shock(claim, true),
+            FieldMetric::ShockLower => self.shock(claim, false),
+            FieldMetric::PanelPressure => self.panel_pressure(claim),
+            FieldMetric::FreeStreamDeviation => self.free_stream_deviation(),
+            FieldMetric::ShockPositionError => self.shock_position_error(),
+            FieldMetric::WaveAngle => self.wave_angle(claim),
+        }
     }
 
     /// |Â₁ − B̂₁|/|B̂₁| of the first harmonics of this lift and of that of the run `other`.

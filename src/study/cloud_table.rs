@@ -1,14 +1,14 @@
 //! The cloud of a case as plain tables: places, kinds, sizes, and what each particle on a boundary belongs to.
 use std::path::Path;
 
-use super::build_cloud;
+use super::build::build_cloud;
+use super::look::Snapshot;
 use crate::case::{Case, Sides};
 use crate::cloud::Cloud;
 use crate::geometry::dimension;
 use crate::math::Vector;
 use crate::problem;
 use crate::problem::RunError;
-use crate::study::Snapshot;
 
 /// Names of the sides of the domain: the smallest and the largest coordinate of each axis.
 const SIDES: [[&str; 2]; 3] = [["x_min", "x_max"], ["y_min", "y_max"], ["z_min", "z_max"]];

@@ -1,11 +1,11 @@
 //! The bodies of a case as plain tables: segments or triangles as repaired, clipped and closed, and what is measured on them.
 use std::path::Path;
 
+use super::error::RunError;
+use super::reference;
 use crate::case::Case;
 use crate::geometry::{Surface, dimension, load_surface};
 use crate::math::{Bounds, Vector};
-use crate::problem::RunError;
-use crate::problem::reference;
 
 /// The surface of all bodies of a case, in the unit of the geometry; vectors have three components, the last of which is zero in the plane.
 #[derive(Clone, Debug)]

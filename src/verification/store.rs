@@ -13,15 +13,15 @@ use std::path::{Path, PathBuf};
 use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
 
-use super::super::measure::{Measured, Numbers, boundary, forces, solid};
-use super::super::outcome::Outcome;
-use super::super::session::Session;
-use super::super::{flutter, gaf};
+use super::measure::{Measured, Numbers, solid};
 use crate::case::Case;
 use crate::observe::table::write_json;
 use crate::observe::usage::cpu_seconds;
 use crate::observe::{Checkpoint, checkpoint};
 use crate::problem::RunError;
+use crate::record::flutter::Boundary;
+use crate::record::gaf::Column;
+use crate::run::{Outcome, Session, flutter, gaf};
 use crate::study::Monitor;
 use crate::study::monitor::Quiet;
 use crate::study::solids;
@@ -118,8 +118,8 @@ pub(super) struct Job<'a> {
 pub(super) enum Found {
     Flow(Box<Measured>),
     Structure(solid::Numbers),
-    Flutter(boundary::Numbers),
-    Forces(Vec<forces::Force>),
+    Flutter(Box<Boundary>),
+    Forces(Vec<Column>),
 }
 
 /// The part of it that is no array.
@@ -127,8 +127,8 @@ pub(super) enum Found {
 enum Head {
     Flow(Box<Numbers>),
     Structure(solid::Numbers),
-    Flutter(boundary::Numbers),
-    Forces(Vec<forces::Force>),
+    Flutter(Box<Boundary>),
+    Forces(Vec<Column>),
     /// Why it failed.
     Failed(String),
 }
@@ -253,7 +253,7 @@ impl Store {
         let found = match toml::from_str(part("found").as_str()?).ok()? {
             Head::Flow(numbers) => Ok(Found::Flow(Box::new(Measured::from_file(job.case, *numbers, &file)?))),
             Head::Structure(numbers) => Ok(Found::Structure(numbers)),
-            Head::Flutter(numbers) => Ok(Found::Flutter(numbers)),
+            Head::Flutter(boundary) => Ok(Found::Flutter(boundary)),
             Head::Forces(all) => Ok(Found::Forces(all)),
             Head::Failed(why) => Err(why),
         };
@@ -296,7 +296,7 @@ impl Ended {
         let head = match &self.found {
             Ok(Found::Flow(run)) => Head::Flow(Box::new(run.numbers.clone())),
             Ok(Found::Structure(numbers)) => Head::Structure(numbers.clone()),
-            Ok(Found::Flutter(numbers)) => Head::Flutter(numbers.clone()),
+            Ok(Found::Flutter(boundary)) => Head::Flutter(boundary.clone()),
             Ok(Found::Forces(all)) => Head::Forces(all.clone()),
             Err(why) => Head::Failed(why.clone()),
         };
@@ -314,7 +314,7 @@ impl Found {
         match self {
             Self::Flow(run) => (run.numbers.particles, Some(run.numbers.iterations)),
             Self::Structure(numbers) => (numbers.particles, None),
-            Self::Flutter(numbers) => (numbers.particles, None),
+            Self::Flutter(boundary) => (boundary.flutter.first().map_or(0, |at| at.particles), None),
             Self::Forces(_) => (0, None),
         }
     }
@@ -352,11 +352,11 @@ impl Job<'_> {
             },
             Kind::Flutter => {
                 let found = flutter::in_memory(self.case, self.folder, None, quiet)?;
-                found.map(|boundary| Found::Flutter((&boundary).into())).ok_or(Failure::Stopped)
+                found.map(|boundary| Found::Flutter(Box::new(boundary))).ok_or(Failure::Stopped)
             }
             Kind::Forces => {
                 let found = gaf::in_memory(self.case, self.folder, quiet)?;
-                found.map(|matrices| Found::Forces(forces::Force::all(&matrices))).ok_or(Failure::Stopped)
+                found.map(|matrices| Found::Forces(matrices.columns)).ok_or(Failure::Stopped)
             }
         }
     }
@@ -400,4 +400,26 @@ fn told(ended: &Ended) -> String {
     let size = if ended.found.is_ok() { format!("{particles} particles{iterations}") } else { "failed".into() };
     let from = if *kept { ", known from before" } else { "" };
     format!("{name}: {size}, {cpu_seconds:.1} s of processor time{from}")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::record::flutter::{FlutterAt, FlutterRow};
+    use crate::record::gaf::Errors;
+
+    #[test]
+    fn boundaries_and_forces_are_kept_as_they_are_found() {
+        let row =
+            FlutterRow { kind: "flutter".into(), speed: 0.1 + 0.2, error: f64::INFINITY, ..FlutterRow::default() };
+        let mut boundary = Boundary::new("t");
+        boundary.flutter.push(FlutterAt { mach: 0.5, crossings: vec![row], ..FlutterAt::default() });
+        let errors = Some(Errors { cl_error: 1.0, cm_error: f64::INFINITY, q_error: vec![1.0 / 3.0] });
+        let forces = vec![Column { k: 0.1, q: vec![[1.0, -2.0]], errors, ..Column::default() }];
+        for head in [Head::Flutter(Box::new(boundary)), Head::Forces(forces)] {
+            let text = toml::to_string(&head).unwrap();
+            let again: Head = toml::from_str(&text).unwrap_or_else(|e| panic!("{e}\n{text}"));
+            assert_eq!(toml::to_string(&again).unwrap(), text);
+        }
+    }
 }

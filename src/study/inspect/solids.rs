@@ -3,14 +3,14 @@ use std::path::Path;
 
 use serde::Serialize;
 
+use super::super::solids::possible;
 use super::trial;
 use crate::case::{Case, Temporal};
 use crate::geometry::dimension;
 use crate::problem::RunError;
-use crate::problem::solids::{build, remembers, supported};
+use crate::problem::solids::{Filling, supported};
 use crate::solid::forces::State;
 use crate::solid::{Plane, Support};
-use crate::study::solids::possible;
 use crate::system::Mechanical;
 
 /// A structure of particles before it is computed, in SI units; in the plane of the thickness of the case, of a whole turn about an axis.
@@ -56,14 +56,15 @@ pub fn inspect_structure(case: &Case, input: &Path) -> Result<SolidReport, RunEr
 }
 
 /// What the bodies made of particles in a gas are; `None` where there are none.
-pub(in super::super) fn inspect_in_gas(case: &Case, input: &Path) -> Result<Option<SolidReport>, RunError> {
+pub(super) fn inspect_in_gas(case: &Case, input: &Path) -> Result<Option<SolidReport>, RunError> {
     case.solids().next().is_some().then(|| inspect_structure(case, input)).transpose()
 }
 
 fn report<const D: usize>(case: &Case, input: &Path) -> Result<SolidReport, RunError> {
-    let built = build::<D>(case, input)?;
+    let filling = Filling::of(case, input);
+    let built = filling.build::<D>()?;
     if case.has_gas() {
-        remembers(case, &built)?;
+        filling.remembers(&built)?;
     } else if let Temporal::Harmonics(plan) = &case.time {
         possible(&built, plan)?;
     }
@@ -79,7 +80,7 @@ fn report<const D: usize>(case: &Case, input: &Path) -> Result<SolidReport, RunE
         // the step of the gas is another one
         Temporal::Explicit(e) if case.has_gas() => (e.until.map(|until| until.0 / (e.cfl * stable_step)), true),
         Temporal::Newmark(n) => (Some(n.until.0 / n.step.0), false),
-        _ => trial::steps(case, input, &built).map_or((None, false), |s| (Some(s.number), !s.is_known)),
+        _ => trial::steps((case, filling), &built).map_or((None, false), |s| (Some(s.number), !s.is_known)),
     };
     let mut warnings = built.warnings;
     // a body of revolution moves as a whole along its axis alone

@@ -13,8 +13,7 @@ use crate::motion::Motions;
 use crate::observe::loads::LoadAxes;
 use crate::problem::numerics::balance;
 use crate::problem::reference::chord;
-use crate::record::summary::list;
-use crate::study::ReferenceValues;
+use crate::record::summary::{ReferenceValues, list};
 
 /// Stream, reference values, bodies and times of a case: in SI units where `dimensional` is true; otherwise lengths are in the
 /// unit of the geometry, and density and sound speed of the stream are 1.

@@ -2,19 +2,18 @@
 //!
 //! How many iterations a flow takes, and how far they run in parallel, nobody knows who has not seen it: a bow shock takes five times
 //! those of a section at Mach 0.5. What does not depend on the number of particles is seen on few of them.
-use std::path::Path;
 use std::time::{Duration, Instant};
 
-use super::session::Session;
-use crate::case::{Case, Initial, Temporal, Time};
+use super::super::cost::Pilot;
+use super::super::flow::in_memory_in;
+use super::super::look::Snapshot;
+use super::super::monitor::{Monitor, Tick};
+use super::super::setup::behind_shocks;
+use crate::case::{Case, Dual, Initial, Temporal, Time};
 use crate::cloud::CloudSpec;
 use crate::cloud::layout::count;
 use crate::geometry::Surface;
-use crate::problem::numerics;
-use crate::problem::spacing;
-use crate::study::cost::Pilot;
-use crate::study::setup::behind_shocks;
-use crate::study::{Monitor, Snapshot, Tick};
+use crate::problem::{ProblemIn, numerics};
 
 /// Greatest number of particles of a pilot: a fraction of a second in the plane.
 const MOST: f64 = 6000.0;
@@ -53,51 +52,35 @@ impl Monitor for Bounded {
     }
 }
 
-/// Solves the steady flow around the bodies of a case, whose cloud has `n` particles, on a coarser cloud, and some steps of a march, whose motion has the `period`. `None` where a run has no
-/// such start or it counts for little, where even the coarser cloud has many particles, and where it is not solved soon.
-pub(super) fn fly<const D: usize>(
-    case: &Case,
-    input: &Path,
-    surface: Option<&Surface<D>>,
-    n: usize,
-    period: Option<f64>,
-) -> Option<Pilot> {
+/// Solves the steady flow around the bodies of a problem, whose cloud has `n` particles, on a coarser cloud, and some steps of a march, whose
+/// motion has the `period`. `None` where a run has no such start or it counts for little, where even the coarser cloud has many particles, and
+/// where it is not solved soon.
+pub(super) fn fly<const D: usize>(problem: &ProblemIn<D>, n: usize, period: Option<f64>) -> Option<Pilot> {
+    let case = problem.case();
     let relaxation = numerics::relaxation(case).filter(|_| !matches!(case.time, Temporal::Harmonics(_)))?;
     if case.bodies.is_empty() || !matches!(case.initial, Initial::FreeStream) {
         return None;
     }
     let factor = FACTORS.into_iter().find(|f| n as f64 / f.powi(D as i32) <= MOST)?;
-    let mut coarse = spacing::scaled(case.points().first()?, factor);
-    (coarse.time, coarse.accuracy) = (Temporal::Steady(relaxation), None);
-    (coarse.motion, coarse.gaf) = (None, None);
-    // what moves in modes alone is rigid here, and not made of particles
-    let full: Vec<usize> = coarse.solids().map(|(i, ..)| i).collect();
-    for (i, body) in coarse.bodies.iter_mut().enumerate() {
-        body.motion = None;
-        body.solid = body.solid.take().filter(|_| full.contains(&i));
-    }
-    coarse.structures.clear();
-    coarse.compare.clear();
-    coarse.adapt.cycles = 0;
-    let mut session = Session::open(&coarse, input).ok()?;
-    session.solve(&mut Bounded::in_space(D)).ok()?;
-    let found = session.summary()?;
-    let following = followed(case, surface?, session.field()?).unwrap_or(1.0);
-    let step = step::<D>(case, input, (factor, period));
-    Some(Pilot { particles: found.convergence.particles as f64, seconds: found.cost.wall_seconds, following, step })
+    let coarse = problem.at_rest(relaxation, factor).ok()?;
+    let found = in_memory_in(&coarse, &mut Bounded::in_space(D)).ok()??;
+    let (convergence, cost) = (&found.summary.convergence, &found.summary.cost);
+    let following = followed(case, problem.surface()?, &found.field).unwrap_or(1.0);
+    let step = step(problem, (factor, period));
+    Some(Pilot { particles: convergence.particles as f64, seconds: cost.wall_seconds, following, step })
 }
 
 /// Seconds of an implicit step in time on the coarser cloud with `factor` times the spacing; `None` where there are none, or too few were
 /// taken in the time.
-fn step<const D: usize>(case: &Case, input: &Path, (factor, period): (f64, Option<f64>)) -> Option<f64> {
-    let mut coarse = spacing::scaled(case, factor);
+fn step<const D: usize>(problem: &ProblemIn<D>, (factor, period): (f64, Option<f64>)) -> Option<f64> {
+    let case = problem.case();
     let length = case.step_length(period)?;
-    let Temporal::Dual(dual) = &mut coarse.time else { return None };
-    let until = Time(STEPS * case.flow.units().case_time(length));
-    (dual.until, dual.periods, dual.periodic_tolerance, dual.swing) = (Some(until), None, None, None);
-    coarse.compare.clear();
+    let Temporal::Dual(dual) = &case.time else { return None };
+    let until = Some(Time(STEPS * case.flow.units().case_time(length)));
+    let time = Dual { until, periods: None, periodic_tolerance: None, swing: None, ..dual.clone() };
+    let coarse = problem.in_time(Temporal::Dual(time), factor).ok()?;
     let mut watch = Bounded::in_space(D);
-    Session::open(&coarse, input).ok()?.solve(&mut watch).ok()?;
+    in_memory_in(&coarse, &mut watch).ok()?;
     let last = watch.steps.get(watch.steps.len().checked_sub(TIMED + 1)?..)?;
     Some(last[TIMED].duration_since(last[0]).as_secs_f64() / TIMED as f64)
 }

@@ -3,36 +3,23 @@ use std::fs;
 use std::path::Path;
 
 use num_complex::Complex64;
-use serde::{Deserialize, Serialize};
 
-use super::super::gaf::{Column, Matrices};
 use super::{Value, at_no_thickness, designed_thickness};
 use crate::case::Case;
-use crate::verify::{Claim, Metric, Table};
+use crate::record::gaf::Column;
+use crate::verify::metric::ForceMetric;
+use crate::verify::{Claim, Table};
 
 /// Part by which reduced frequencies may differ.
 const SAME: f64 = 1e-9;
 
-/// Lift and moment per motion in a mode at a reduced frequency: real and imaginary parts.
-#[derive(Clone, Debug, Serialize, Deserialize)]
-pub(in super::super) struct Force {
-    k: f64,
-    mode: String,
-    cl: [f64; 2],
-    cm: [f64; 2],
-}
-
-impl Force {
-    /// All forces of the matrices, frequency by frequency.
-    pub(in super::super) fn all(matrices: &Matrices) -> Vec<Self> {
-        let force = |c: &Column| Self { k: c.k, mode: c.mode.clone(), cl: c.cl, cm: c.cm };
-        matrices.columns.iter().map(force).collect()
-    }
-}
-
-/// The metric of `claim` of the forces on a section, extrapolated to none of its thickness where there are several; `folder` has the table,
+/// A metric of the forces on a section, extrapolated to none of its thickness where there are several; `folder` has the table,
 /// with the columns `mode`, `k`, `coefficient` (`cl` or `cm`), `re` and `im`.
-pub(in super::super) fn value(sections: &[(&Case, &[Force])], claim: &Claim, folder: &Path) -> Value {
+pub(in super::super) fn value(
+    sections: &[(&Case, &[Column])],
+    (metric, claim): (ForceMetric, &Claim),
+    folder: &Path,
+) -> Value {
     let name = claim.file.as_deref().ok_or("the claim names no `file` of forces")?;
     let wrong = |e: &dyn std::fmt::Display| format!("`{name}`: {e}");
     let text = fs::read_to_string(folder.join(name)).map_err(|e| wrong(&e))?;
@@ -57,16 +44,16 @@ pub(in super::super) fn value(sections: &[(&Case, &[Force])], claim: &Claim, fol
             found += weight * coefficient(column, &coefficients[row])?;
         }
         let over = found / Complex64::new(re[row], im[row]);
-        let apart = match claim.metric {
-            Metric::ForcePhaseError => over.arg().to_degrees(),
-            _ => over.norm() - 1.0,
+        let apart = match metric {
+            ForceMetric::ForcePhaseError => over.arg().to_degrees(),
+            ForceMetric::ForceAmplitudeError => over.norm() - 1.0,
         };
         worst = worst.max(apart.abs());
     }
     if table.is_empty() { Err(wrong(&"no forces")) } else { Ok(worst) }
 }
 
-fn coefficient(column: &Force, name: &str) -> Result<Complex64, String> {
+fn coefficient(column: &Column, name: &str) -> Result<Complex64, String> {
     let [re, im] = match name {
         "cl" => column.cl,
         "cm" => column.cm,
