@@ -588,7 +588,7 @@ mod tests {
         let (before, after) = (pieces(20), united(&surface, &pieces(20)));
         assert!(after.len() * 8 < before.len() && after.len() > 80 * 80, "{}", after.len());
         let area = |all: &[Sample<3>]| all.iter().map(|s| s.area[2]).sum::<f64>();
-        assert!((area(&before) - area(&after)).abs() < 1e-12);
+        assert!((area(&before) - area(&after)).abs() < 1e-10);
         // two sides of a thin plate stay apart
         let below = |s: Sample<3>| Sample { normal: s.normal * -1.0, area: s.area * -1.0, ..s };
         let both: Vec<_> = pieces(20).into_iter().flat_map(|s| [s.clone(), below(s)]).collect();
