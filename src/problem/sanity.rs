@@ -4,8 +4,9 @@ use super::numerics;
 use super::reference::chord;
 use super::scales;
 use super::spacing::{ACROSS, asked};
-use crate::case::{Case, Cloud, NEVER_LAMINAR, NO_CONTINUUM, Temporal};
+use crate::case::{Case, Cloud, NEVER_LAMINAR, NO_CONTINUUM, RefineBox, Temporal};
 use crate::geometry::Surface;
+use crate::math::Bounds;
 use crate::motion::{MOST_PERIODS, Motions};
 
 /// Greatest spacing in lengths of a body.
@@ -50,7 +51,8 @@ pub(crate) fn sane<const D: usize>(
         });
     }
     for (body, name) in surface.iter().flat_map(|s| s.bodies.iter().enumerate()) {
-        let length = surface.map_or(0.0, |s| s.bounds_of(body).extent().max_abs());
+        let bounds = surface.map_or(Bounds::EMPTY, |s| s.bounds_of(body));
+        let (spacing, length) = (spacing_around(&case.cloud, spacing, &bounds), bounds.extent().max_abs());
         if spacing > COARSE * length {
             return Err(RunError::Senseless {
                 what: format!("`cloud.spacing` is {spacing}, but body `{name}` is only {length} long"),
@@ -67,12 +69,19 @@ pub(crate) fn sane<const D: usize>(
 /// Bodies whose loads the spacing of a cloud leaves a rough guess.
 pub(crate) fn rough<const D: usize>(cloud: &Cloud, surface: Option<&Surface<D>>) -> Vec<String> {
     let (Some(spacing), Some(surface)) = (cloud.spacing.map(|l| l.0), surface) else { return Vec::new() };
-    let lengths = (0..surface.bodies.len()).map(|body| surface.bounds_of(body).extent().max_abs() / spacing);
+    let length = |bounds: Bounds<D>| bounds.extent().max_abs() / spacing_around(cloud, spacing, &bounds);
+    let lengths = (0..surface.bodies.len()).map(|body| length(surface.bounds_of(body)));
     let told = |(length, name): (f64, &String)| {
         let words = || format!("body `{name}` is only {length:.1} spacings long: its loads are a rough guess");
         (length * ROUGH < 1.0).then(words)
     };
     lengths.zip(&surface.bodies).filter_map(told).collect()
+}
+
+/// Spacing of a cloud around a body: that of the finest box that holds all of it, where one is finer than `spacing`.
+fn spacing_around<const D: usize>(cloud: &Cloud, spacing: f64, body: &Bounds<D>) -> f64 {
+    let holds = |b: &&RefineBox| (0..D).all(|d| b.min[d].0 <= body.min[d] && body.max[d] <= b.max[d].0);
+    cloud.boxes.iter().filter(holds).map(|b| b.spacing.0).fold(spacing, f64::min)
 }
 
 /// Refuses frequencies that have no common one where a period is needed, and fewer harmonics of it than the motion has.

@@ -55,10 +55,10 @@ pub enum FieldTruth {
 }
 
 impl FieldTruth {
-    /// The exact solution that starts as `initial`; `None` for a free stream. `period` is the extent of a periodic domain.
+    /// The exact solution that starts as `initial`; `None` for a free stream and for formulas. `period` is the extent of a periodic domain.
     pub fn new(initial: &Initial, gamma: f64, period: Option<Vector<2>>) -> Result<Option<Self>, Error> {
         Ok(match initial {
-            Initial::FreeStream => None,
+            Initial::FreeStream | Initial::Formula { .. } => None,
             Initial::Riemann { left, right, position, axis } => {
                 let state = |s: &[f64; 3]| State::new(s[0], s[1], s[2]);
                 let problem = RiemannProblem::new(state(left), state(right), gamma)?;

@@ -76,6 +76,11 @@ mod sanity {
         let coarse = told(&format!("{stream}[cloud]\nspacing = 5\n")).unwrap_err();
         assert!(coarse.contains("`cloud.spacing` is 5, but body `body-1` is only 1 long"), "{coarse}");
         assert!(told(&format!("{stream}[cloud]\nspacing = 0.2\n")).unwrap()[0].contains("5.0 spacings long"));
+        let boxed = |max: f64| {
+            format!("{stream}[cloud]\nspacing = 0.2\n[[cloud.box]]\nmin = [-1, -1]\nmax = [{max}, 1]\nspacing = 0.02\n")
+        };
+        assert_eq!(told(&boxed(2.0)), Ok(Vec::new()), "the spacing around the body is that of the box");
+        assert!(told(&boxed(0.5)).unwrap()[0].contains("5.0 spacings long"), "a box around a part of the body");
         let family = format!("{stream}[cloud]\nspacing = 0.2\n[accuracy]\n");
         assert_eq!(told(&family), Ok(Vec::new()), "which cloud its result is told on is not known yet");
         let swing = |period: &str| {

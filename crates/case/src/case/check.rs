@@ -3,13 +3,13 @@
 //! Every check looks at values that passed on their own and stays silent about absent ones, so one mistake is told once.
 use serde_json::{Value, json};
 
-use super::Accuracy;
 use super::body_keys::SHAPES;
 use super::draft::{Draft, closest, default_name};
 use super::facts::{has_gas, is, is_dimensional};
 use super::keys::SIDES;
 use super::naca::{Naca, TrailingEdge};
 use super::schema::one_of;
+use super::{Accuracy, initial};
 
 /// Part of the length of a hinge line that must lie across the stream.
 const ALONG_STREAM: f64 = 0.1;
@@ -25,7 +25,7 @@ pub(super) fn contradictions(draft: &mut Draft<'_>) {
     if let Some(d) = dimension {
         placements(draft, d);
         in_dimension(draft, d);
-        initial(draft, d);
+        initial::check(draft, d);
         if has_gas(draft) {
             sides(draft, d);
         }
@@ -465,34 +465,6 @@ fn domain(draft: &mut Draft<'_>) {
     if 0.0 < shortest && shortest <= spacing {
         let message = format!("`cloud.spacing` is {spacing}, but the domain is only {shortest} wide");
         draft.fail("cloud.spacing", message).hint("choose a spacing many times smaller than the domain");
-    }
-}
-
-/// Ringleb's flow lives in the plane, gases have density and pressure.
-fn initial(draft: &mut Draft<'_>, d: usize) {
-    let kind =
-        draft.get("initial").and_then(|v| v.as_str().or_else(|| v.as_object()?.keys().next().map(String::as_str)));
-    if d == 3 && kind == Some("ringleb") {
-        let hint = "use a 2-D domain: two numbers in `min` and `max`";
-        draft.fail("initial", "`ringleb` is a 2-D flow, but the case is 3-D").hint(hint);
-    }
-    let own =
-        ["initial.vortex", "initial.ringleb"].iter().any(|k| draft.get(k).is_some()) || is(draft, "initial", "ringleb");
-    if own && is_dimensional(draft) {
-        let message = "this initial field is nondimensional (density and pressure, or sound speed, are 1), but the free stream is dimensional";
-        draft.fail("initial", message).hint("give `[flow]` by `mach` alone");
-    }
-    if let Some(axis) = draft.number("initial.riemann.axis").filter(|&a| a >= d as f64) {
-        let message = format!("`initial.riemann.axis` is {axis} in a {d}-D case");
-        draft.fail("initial.riemann.axis", message).allowed(format!("from 0 to {}", d - 1));
-    }
-    for side in ["initial.riemann.left", "initial.riemann.right"] {
-        let Some(state) = draft.numbers(side) else { continue };
-        for (i, name) in [(0, "density"), (2, "pressure")] {
-            if state.get(i).is_some_and(|x| *x <= 0.0) {
-                draft.fail(side, format!("the {name} in `{side}` is {}", state[i])).allowed("greater than 0");
-            }
-        }
     }
 }
 

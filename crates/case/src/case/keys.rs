@@ -366,7 +366,32 @@ const INITIAL: &[Variant] = &[
         "isentropic vortex (Shu 1998), density and pressure 1 far away; in 3-D a column along z",
     ),
     Variant::word("ringleb", "Ringleb's flow, stagnation density and sound speed 1, 2-D"),
+    Variant::table(
+        "formula",
+        &FORMULA_FIELD,
+        "formulas of the position: a velocity profile of a channel, a pulse of pressure",
+    ),
 ];
+
+static FORMULA_FIELD: Table = Table::of(&[
+    Field::required(
+        "velocity",
+        Kind::List(&List { item: Kind::Formula, min: 2, max: 3, single: false }),
+        "Velocity, a number or a formula in `x`, `y`, `z` for each axis, `[\"6 * y * (1 - y)\", 0]`: m/s with a dimensional free stream, else over its sound speed.",
+    ),
+    Field::optional(
+        "density",
+        Kind::Formula,
+        "that of the free stream",
+        "Density, a number or a formula: kg/m3 with a dimensional free stream, else over that of the free stream.",
+    ),
+    Field::optional(
+        "pressure",
+        Kind::Formula,
+        "that of the free stream",
+        "Pressure, a number or a formula: Pa with a dimensional free stream, else over ρ∞ a∞², so that the free stream has 1/γ.",
+    ),
+]);
 
 static RIEMANN: Table = Table::of(&[
     Field::required(

@@ -18,6 +18,7 @@ mod gaf;
 mod gaf_check;
 mod gaf_keys;
 mod idle;
+mod initial;
 mod keys;
 mod kinds;
 mod mode_file;
@@ -54,6 +55,7 @@ pub use error::{CaseError, CaseErrors};
 pub use flow::{FreeStreamScales, NEVER_LAMINAR, NO_CONTINUUM, Units, ViscosityLaw, Viscous, Wall};
 pub use flutter::{Flutter, GasResponse, LimitCycles, Matching};
 pub use gaf::{AnyMode, FlexibleMode, Gaf, GafMethod, Mode};
+pub use initial::Initial;
 pub use mode_file::{ModeFile, ModeTable, read_mode};
 pub use motion::{
     BodyMotionSpec, ModeMotion, Motion, MotionFormula, MotionTable, OwnFrequency, ParticleMotion, Pitch, Plunge,
@@ -419,50 +421,6 @@ impl Side {
     /// True where images of the gas are beyond the side: at planes of symmetry and periodic sides.
     pub const fn has_images(self) -> bool {
         matches!(self, Self::Symmetry | Self::Periodic)
-    }
-}
-
-/// Initial field.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum Initial {
-    /// Free stream everywhere.
-    #[default]
-    FreeStream,
-    /// Two states (density, velocity along `axis`, pressure) on either side of a plane.
-    Riemann {
-        /// Left state (density, velocity, pressure).
-        left: [f64; 3],
-        /// Right state (density, velocity, pressure).
-        right: [f64; 3],
-        /// Position of the plane.
-        position: f64,
-        /// Axis normal to the plane, 0 for x.
-        axis: u8,
-    },
-    /// Isentropic vortex (Shu 1998) of given strength, centre and mean velocity; density and pressure are 1 far away.
-    Vortex {
-        /// Strength β.
-        strength: f64,
-        /// Initial centre.
-        centre: [f64; 2],
-        /// Mean velocity.
-        velocity: [f64; 2],
-    },
-    /// Ringleb's flow with stagnation density and stagnation sound speed 1.
-    Ringleb,
-}
-
-impl Initial {
-    /// The field in units of the solver. The vortex and Ringleb's flow are defined in the units of the solver already.
-    pub fn in_solver_units(&self, units: &Units) -> Self {
-        let state = |s: &[f64; 3]| [s[0] / units.density, units.solver_rate(s[1]), s[2] / units.pressure()];
-        match self {
-            Self::Riemann { left, right, position, axis } => {
-                Self::Riemann { left: state(left), right: state(right), position: *position, axis: *axis }
-            }
-            other => other.clone(),
-        }
     }
 }
 

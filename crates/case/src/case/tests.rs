@@ -225,6 +225,23 @@ fn hinges_that_are_none_are_refused() {
 }
 
 #[test]
+fn a_field_at_the_start_may_be_formulas_of_the_position() {
+    let case = |field: &str| {
+        format!(
+            "[flow]\nmach = 0.1\n[initial.formula]\n{field}\n[cloud]\nspacing = 0.1\ndomain = {{ min = [0, 0], max = [1, 1] }}\n"
+        )
+    };
+    let good = case("velocity = [\"6 * y * (1 - y)\", 0]\ndensity = 2\n");
+    let Initial::Formula { velocity, density, pressure } = read(&good, "case.toml").unwrap().initial else { panic!() };
+    assert_eq!((velocity.len(), velocity[1].as_str(), density.as_deref(), pressure), (2, "0.0", Some("2.0"), None));
+    assert_shows(&case("density = 1"), &["`initial.formula.velocity`"]);
+    assert_shows(&case("velocity = [1, \"z\"]"), &["unknown name `z`"]);
+    assert_shows(&case("velocity = [1, \"sin(t)\"]"), &["uses `t`, but it is a field at the start"]);
+    assert_shows(&case("velocity = [1, 2, 3]"), &["has 3 components in a 2-D case"]);
+    assert_shows(&case("velocity = [1, 2]\npressure = -1"), &["`initial.formula.pressure` is -1", "greater than 0"]);
+}
+
+#[test]
 fn domains_and_sides_that_contradict_themselves_are_refused() {
     assert_shows("[flow]\nmach = 1\n[cloud]\nspacing = 1\n", &["a case without bodies needs `cloud.domain`"]);
     assert_shows(

@@ -1,7 +1,8 @@
 //! Fields at the start, states held on the boundary, and the far field.
 use super::fluid::FarField;
 pub use super::fluid::Field;
-use crate::case::{Case, Domain, Initial};
+use crate::case::formula::Formula;
+use crate::case::{Case, Domain, Initial, Units};
 use crate::exact::GasState;
 use crate::exact::ringleb::Ringleb;
 use crate::exact::vortex::IsentropicVortex;
@@ -72,15 +73,41 @@ pub fn free_stream<const D: usize>(case: &Case) -> Primitive<D> {
 /// The field at the start of a case.
 pub fn initial<const D: usize>(case: &Case) -> Result<Field<D>, StartError> {
     let extent = |domain: &Domain| Vector::from_fn(|d| domain.max[d].0 - domain.min[d].0);
-    start_field(
-        &case.initial.in_solver_units(&case.flow.units()),
-        &FreeStream::of_case(case),
-        case.cloud.domain.as_ref().map(extent),
-    )
+    let (units, stream) = (case.flow.units(), FreeStream::of_case(case));
+    match &case.initial {
+        Initial::Formula { velocity, density, pressure } => {
+            formula_field([velocity, density.as_slice(), pressure.as_slice()], &units, &stream)
+        }
+        other => start_field(&other.in_solver_units(&units), &stream, case.cloud.domain.as_ref().map(extent)),
+    }
+}
+
+/// A field of formulas of the position, in units of the case: velocity, density and pressure; an empty list is the free stream.
+fn formula_field<const D: usize>(
+    texts: [&[String]; 3],
+    units: &Units,
+    stream: &FreeStream,
+) -> Result<Field<D>, StartError> {
+    let scales = [1.0 / units.speed, 1.0 / units.density, 1.0 / units.pressure()];
+    let [velocity, density, pressure] = texts;
+    let parse = |text: &String| Formula::parse_in(text, D).map_err(|e| StartError(format!("`{text}`: {}", e.message)));
+    let parsed = |texts: &[String]| texts.iter().map(parse).collect::<Result<Vec<_>, _>>();
+    let [velocity, density, pressure] = [parsed(velocity)?, parsed(density)?, parsed(pressure)?];
+    let free = stream.state::<D>();
+    Ok(std::sync::Arc::new(move |x| {
+        let value = |formulas: &[Formula], k: usize, free: f64, scale: f64| {
+            formulas.get(k).map_or(free, |f| scale * f.value_at(&x.0, 0.0, 0.0))
+        };
+        Primitive {
+            density: value(&density, 0, free.density, scales[1]),
+            velocity: Vector::from_fn(|d| value(&velocity, d, 0.0, scales[0])),
+            pressure: value(&pressure, 0, free.pressure, scales[2]),
+        }
+    }))
 }
 
 /// A field at the start; a vortex repeats after `period` along each of two axes.
-pub fn start_field<const D: usize>(
+fn start_field<const D: usize>(
     initial: &Initial,
     stream: &FreeStream,
     period: Option<Vector<2>>,
@@ -94,7 +121,7 @@ pub fn start_field<const D: usize>(
     };
     let wrong = |e: crate::exact::Error| StartError(e.to_string());
     match initial {
-        Initial::FreeStream => Ok(std::sync::Arc::new(move |_| free)),
+        Initial::FreeStream | Initial::Formula { .. } => Ok(std::sync::Arc::new(move |_| free)),
         Initial::Riemann { left, right, position, axis } => {
             let (left, right, position, axis) = (*left, *right, *position, *axis as usize);
             Ok(std::sync::Arc::new(move |x| {
@@ -170,5 +197,23 @@ impl<const D: usize> FarField<D> for Stream<D> {
         let vortex = self.vortex.filter(|_| !self.lifting)?.with_circulation(self.circulation(force));
         let v = vortex.velocity_increment(&Vector([x[0], x[1]]));
         Some(Vector::from_fn(|d| v[d.min(1)]))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn formulas_of_the_start_are_in_units_of_the_case() {
+        let text = "[flow]\nvelocity = \"20 m/s\"\npressure = \"1e5 Pa\"\ndensity = \"1.4 kg/m3\"\n[initial.formula]\n\
+                    velocity = [\"10 * y\", \"x\"]\npressure = \"1e5 + 2e4 * x\"\n[cloud]\nspacing = 0.1\n\
+                    domain = { min = [0, 0], max = [1, 1] }\n";
+        let case = crate::case::read(text, "case.toml").unwrap();
+        let sound = (1.4_f64 * 1e5 / 1.4).sqrt();
+        let q = initial::<2>(&case).unwrap()(&Vector([0.5, 0.25]));
+        assert!((q.density - 1.0).abs() < 1e-15);
+        assert!((q.velocity - Vector([2.5, 0.5]) * (1.0 / sound)).norm() < 1e-15);
+        assert!((q.pressure - 1.1 / 1.4).abs() < 1e-14, "{}", q.pressure);
     }
 }
