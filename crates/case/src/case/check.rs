@@ -4,12 +4,12 @@
 use serde_json::{Value, json};
 
 use super::Accuracy;
-use super::body_keys::SHAPES;
+use super::body::SHAPES;
 use super::draft::{Draft, closest, default_name};
 use super::facts::{has_gas, is, is_dimensional};
-use super::keys::SIDES;
 use super::naca::{Naca, TrailingEdge};
 use super::schema::one_of;
+use super::sides::SIDES;
 
 /// Part of the length of a hinge line that must lie across the stream.
 const ALONG_STREAM: f64 = 0.1;
