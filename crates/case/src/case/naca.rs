@@ -15,7 +15,7 @@ keys! {
     /// A NACA section.
     pub struct Naca, NACA.short("digits") {
         /// Its designation.
-        digits: String = required(Kind::Matching("^([Nn][Aa][Cc][Aa][_-]?)?[0-9].{3,}$")),
+        digits: String = required(Kind::Matching("^([Nn][Aa][Cc][Aa][ _-]?)?[0-9].{3,}$")),
         /// How the section ends.
         trailing_edge: TrailingEdge = defaulted(Kind::Words(TRAILING_EDGES), Absent::Word("closed")),
     }
