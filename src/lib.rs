@@ -22,9 +22,9 @@ pub use alula_geometry::{geometry, motion, structure};
 pub use alula_report::{observe, record, report};
 pub use alula_solid::solid;
 
+pub mod claims;
 pub mod coupling;
 pub mod problem;
 pub mod run;
 pub mod study;
 pub mod verification;
-pub mod verify;

@@ -1,154 +1,68 @@
 //! Checkpoints of a flow as files.
+//!
+//! What [`Saved`] tells in few numbers is JSON; states and what an integrator remembers are arrays, bit by bit.
 use std::borrow::Cow;
 use std::path::Path;
-use std::sync::Arc;
 
 use serde::{Deserialize, Serialize};
+use serde_json::json;
 
 use crate::observe::checkpoint::{self, Array, Checkpoint, Field};
-use crate::observe::convergence::CloudLoads;
-use crate::observe::table::TableMark;
 use crate::problem::RunError;
 use crate::scheme::RemapLedger;
-use crate::study::record::polar::PolarRecord;
-use crate::study::record::saved::{FILE, Kept, LagrangianCheckpoint, Saved, Settling, require};
-use crate::study::stage::{Stage, Task};
+use crate::study::record::saved::{FILE, Kept, LagrangianCheckpoint, Saved, require};
+use crate::study::stage::Task;
 use crate::system::Reach;
 use crate::time::control::Phase;
 use crate::time::relax::Resume;
 use crate::time::{Memory, Past};
 
 /// What the numbers of a checkpoint mean; another number, another meaning.
-const MEANING: u32 = 4;
+const MEANING: u32 = 5;
 
-/// What a checkpoint says of a polar.
-#[derive(Clone, Debug, Default, Serialize, Deserialize)]
-struct PolarMeta {
-    record: PolarRecord,
-    /// Factor, point and length of each state that is kept.
-    kept: Vec<(f64, usize, usize)>,
-    /// Length of the sources of each.
-    #[serde(default)]
-    sources: Vec<usize>,
-}
-
-/// Numbers of a checkpoint that are not arrays.
-#[derive(Clone, Debug, Serialize, Deserialize)]
-struct Meta {
+/// What is not an array in a checkpoint.
+#[derive(Serialize, Deserialize)]
+struct Meta<'a> {
     meaning: u32,
-    stage: usize,
-    stages: Vec<Stage>,
-    iteration: u64,
-    stage_iteration: u32,
-    time_bits: u64,
-    cfl_bits: u64,
-    linear: u32,
-    newton: bool,
-    phase_age: u32,
-    phase_best_bits: u64,
-    phase_best_age: u32,
-    start_totals_bits: Vec<u64>,
-    cycles: Vec<[f64; 5]>,
-    clouds: Vec<CloudLoads>,
-    cpu_seconds: f64,
-    wall_seconds: f64,
-    work: u64,
-    steps: [u64; 3],
-    broad: bool,
-    served: u32,
-    made_bits: u64,
-    halved: u32,
-    settling: SettlingCounts,
-    roaming: Option<Counts>,
-    #[serde(default)]
-    polar: PolarMeta,
-    #[serde(default)]
-    equations: Option<u32>,
-    tables: Vec<TableMark>,
+    saved: Saved<'a>,
+    kept: Lengths,
 }
 
-/// What re-clouding did until a checkpoint, and the time at which the cloud was built.
-#[derive(Clone, Debug, Serialize, Deserialize)]
-struct Counts {
-    since_bits: u64,
-    now_bits: u64,
-    renewals: u32,
-    inserted: u64,
-    removed: u64,
-    first_order: u32,
-    lost_bits: Vec<u64>,
-    exchanged_bits: Vec<u64>,
-}
-
-/// Numbers of [`Settling`] that are not arrays.
-#[derive(Clone, Debug, Serialize, Deserialize)]
-struct SettlingCounts {
-    best_bits: u64,
-    best_iteration: u32,
-    evaluations: u64,
-    earlier: u64,
-    width: usize,
-}
+/// Factor and point of each state that is kept, its length and that of its sources.
+#[derive(Debug, Default, Serialize, Deserialize)]
+struct Lengths(Vec<(f64, usize, usize, usize)>);
 
 /// Writes the checkpoint of a run folder.
 pub(crate) fn write(saved: Saved<'_>, out: &Path) -> Result<(), RunError> {
-    let (relax, past) = match saved.memory {
-        Memory::Relaxation(resume) => (resume, Past::default()),
-        Memory::March(past) => (bare(past.iteration), past),
-    };
-    let bits = |v: &[f64]| v.iter().map(|v| v.to_bits()).collect();
-    let meta = Meta {
-        meaning: MEANING,
-        stage: saved.stage,
-        stages: saved.stages,
-        iteration: saved.iteration,
-        stage_iteration: relax.iteration,
-        time_bits: saved.time.to_bits(),
-        cfl_bits: relax.cfl.to_bits(),
-        linear: saved.linear,
-        newton: relax.phase.newton,
-        phase_age: relax.phase.age,
-        phase_best_bits: relax.phase.best.to_bits(),
-        phase_best_age: relax.phase.best_age,
-        start_totals_bits: bits(&saved.start_totals),
-        cycles: saved.cycles,
-        clouds: saved.clouds,
-        cpu_seconds: saved.cpu_seconds,
-        wall_seconds: saved.wall_seconds,
-        broad: past.reach == Reach::Far,
-        work: saved.work,
-        served: past.served,
-        made_bits: past.made.to_bits(),
-        halved: past.halved,
-        steps: [past.last.to_bits(), past.next.to_bits(), u64::from(past.unconverged)],
-        settling: settling_counts(&saved.settling),
-        roaming: saved.lagrangian.as_ref().map(counts),
-        polar: PolarMeta {
-            record: saved.polar,
-            kept: saved.kept.iter().map(|k| (k.factor, k.point, k.state.len())).collect(),
-            sources: saved.kept.iter().map(|k| k.sources.len()).collect(),
-        },
-        equations: saved.equations,
-        tables: saved.tables,
-    };
-    let meta = serde_json::to_value(meta).map_err(|e| other_version(&e))?;
     let mut fields = vec![
-        field("state", saved.state),
-        field("scale", &relax.scale[..]),
-        field("before", past.before),
-        field("older", past.older),
-        field("sources", saved.sources),
-        field("settling", saved.settling.recent.concat()),
-        field(
-            "kept",
-            saved.kept.iter().flat_map(|k| [&k.state[..], &k.sources]).flatten().copied().collect::<Vec<_>>(),
-        ),
+        field("state", &saved.state[..]),
+        field("sources", &saved.sources[..]),
+        field("kept", saved.kept.iter().flat_map(|k| [&k.state[..], &k.sources].concat()).collect::<Vec<_>>()),
     ];
-    if let Some(lagrangian) = saved.lagrangian {
-        let LagrangianCheckpoint { lists, places, velocity, course, .. } = lagrangian;
-        let parts = [("lists", lists), ("places", places), ("velocity", velocity), ("course", course)];
-        fields.extend(parts.map(|(name, data)| field(name, data)));
+    match &saved.memory {
+        Memory::Relaxation(resume) => {
+            let Resume { iteration, cfl, phase, scale, .. } = resume;
+            let steps = [*iteration, u32::from(phase.newton), phase.age, phase.best_age].map(f64::from);
+            fields.push(field("memory", [&steps[..], &[*cfl, phase.best]].concat()));
+            fields.push(field("scale", &scale[..]));
+        }
+        Memory::March(past) => {
+            let far = u32::from(past.reach == Reach::Far);
+            let steps = [past.iteration, far, past.served, past.unconverged, past.halved].map(f64::from);
+            fields.push(field("memory", [&steps[..], &[past.last, past.next, past.made]].concat()));
+            fields.extend([field("before", &past.before[..]), field("older", &past.older[..])]);
+        }
     }
+    if let Some(lagrangian) = &saved.lagrangian {
+        let LagrangianCheckpoint { lists, now, places, velocity, course, since, ledger } = lagrangian;
+        let counts = [ledger.renewals.into(), ledger.inserted, ledger.removed, ledger.first_order.into()];
+        fields.push(field("travel", [&[*now, *since], &counts.map(|n| n as f64)[..]].concat()));
+        let parts = [("lists", lists), ("places", places), ("velocity", velocity), ("course", course)];
+        fields.extend(parts.map(|(name, data)| field(name, &data[..])));
+        fields.extend([field("lost", &ledger.lost[..]), field("exchanged", &ledger.exchanged[..])]);
+    }
+    let kept = Lengths(saved.kept.iter().map(|k| (k.factor, k.point, k.state.len(), k.sources.len())).collect());
+    let meta = json!({ "meaning": MEANING, "saved": &saved, "kept": kept });
     Ok(checkpoint::write(&out.join(FILE), &Checkpoint { meta, fields })?)
 }
 
@@ -161,149 +75,85 @@ pub(crate) fn read(out: &Path) -> Result<Saved<'static>, RunError> {
             "its numbers are those of kind {meaning}, this program reads kind {MEANING}"
         )));
     }
-    let m: Meta = serde_json::from_value(file.meta.clone()).map_err(|e| other_version(&e))?;
+    let Meta { saved, kept, .. } = serde_json::from_value(file.meta.clone()).map_err(|e| other_version(&e))?;
     let part = |name: &str| file.f64(name).map(<[f64]>::to_vec);
-    let lagrangian = match &m.roaming {
-        Some(counts) => Some(travelled(counts, [part("lists")?, part("places")?, part("velocity")?, part("course")?])),
-        None => None,
-    };
-    let marches = m.stages.get(m.stage).is_some_and(|s| s.task == Task::March);
-    let memory = if marches {
-        Memory::March(m.past(part("before")?, part("older")?))
-    } else {
-        Memory::Relaxation(m.resume(part("scale")?))
-    };
+    let marches = saved.stages.get(saved.stage).is_some_and(|s| s.task == Task::March);
     Ok(Saved {
-        lagrangian,
-        settling: settling(&m.settling, &part("settling")?),
-        // checkpoints of versions without polars have none
-        kept: m.polar.kept(&part("kept").unwrap_or_default())?.into(),
-        polar: m.polar.record,
-        iteration: m.iteration,
-        time: f64::from_bits(m.time_bits),
+        memory: if marches { march(&file, saved.time)? } else { relaxation(&file, saved.linear)? },
+        lagrangian: file.f64("travel").ok().map(|_| travelled(&file)).transpose()?,
         state: part("state")?.into(),
-        memory,
-        start_totals: m.start_totals_bits.iter().map(|b| f64::from_bits(*b)).collect(),
-        stage: m.stage,
-        stages: m.stages,
-        cycles: m.cycles,
-        clouds: m.clouds,
-        cpu_seconds: m.cpu_seconds,
-        wall_seconds: m.wall_seconds,
-        work: m.work,
-        linear: m.linear,
         sources: part("sources")?,
-        equations: m.equations,
-        tables: m.tables,
+        kept: kept.states(file.f64("kept")?)?.into(),
+        ..saved
     })
 }
 
-/// What re-clouding did, and when.
-fn counts(lagrangian: &LagrangianCheckpoint) -> Counts {
-    let (t, bits) = (&lagrangian.ledger, |v: &[f64]| v.iter().map(|v| v.to_bits()).collect());
-    Counts {
-        since_bits: lagrangian.since.to_bits(),
-        now_bits: lagrangian.now.to_bits(),
-        renewals: t.renewals,
-        inserted: t.inserted,
-        removed: t.removed,
-        first_order: t.first_order,
-        lost_bits: bits(&t.lost),
-        exchanged_bits: bits(&t.exchanged),
-    }
+/// Where a relaxation stands.
+fn relaxation(file: &Checkpoint<'_>, linear: u32) -> Result<Memory, RunError> {
+    let [iteration, newton, age, best_age, cfl, best] = *row(file, "memory")?;
+    let phase = Phase { newton: newton != 0.0, age: age as u32, best, best_age: best_age as u32 };
+    let scale = file.f64("scale")?.into();
+    Ok(Memory::Relaxation(Resume { iteration: iteration as u32, cfl, linear, phase, scale }))
 }
 
-/// Particles that travel, from what a checkpoint holds.
-fn travelled(counts: &Counts, [lists, places, velocity, course]: [Vec<f64>; 4]) -> LagrangianCheckpoint {
-    let numbers = |bits: &[u64]| bits.iter().map(|b| f64::from_bits(*b)).collect();
+/// Where a march stands.
+fn march(file: &Checkpoint<'_>, time: f64) -> Result<Memory, RunError> {
+    let [iteration, far, served, unconverged, halved, last, next, made] = *row(file, "memory")?;
+    Ok(Memory::March(Past {
+        time,
+        iteration: iteration as u32,
+        last,
+        next,
+        before: file.f64("before")?.to_vec(),
+        older: file.f64("older")?.to_vec(),
+        reach: if far != 0.0 { Reach::Far } else { Reach::Near },
+        served: served as u32,
+        made,
+        unconverged: unconverged as u32,
+        halved: halved as u32,
+    }))
+}
+
+/// Particles that travel.
+fn travelled(file: &Checkpoint<'_>) -> Result<LagrangianCheckpoint, RunError> {
+    let [now, since, renewals, inserted, removed, first_order] = *row(file, "travel")?;
+    let part = |name: &str| file.f64(name).map(<[f64]>::to_vec);
     let ledger = RemapLedger {
-        renewals: counts.renewals,
-        inserted: counts.inserted,
-        removed: counts.removed,
-        first_order: counts.first_order,
-        lost: numbers(&counts.lost_bits),
-        exchanged: numbers(&counts.exchanged_bits),
+        renewals: renewals as u32,
+        inserted: inserted as u64,
+        removed: removed as u64,
+        first_order: first_order as u32,
+        lost: part("lost")?,
+        exchanged: part("exchanged")?,
     };
-    let (since, now) = (f64::from_bits(counts.since_bits), f64::from_bits(counts.now_bits));
-    LagrangianCheckpoint { lists, now, places, velocity, course, since, ledger }
+    let [lists, places, velocity, course] = [part("lists")?, part("places")?, part("velocity")?, part("course")?];
+    Ok(LagrangianCheckpoint { lists, now, places, velocity, course, since, ledger })
 }
 
-/// Numbers of a settling balance that are not arrays.
-fn settling_counts(settling: &Settling) -> SettlingCounts {
-    SettlingCounts {
-        best_bits: settling.best.to_bits(),
-        best_iteration: settling.best_iteration,
-        evaluations: settling.evaluations,
-        earlier: settling.earlier,
-        width: settling.recent.first().map_or(0, Vec::len),
-    }
+/// The numbers of a short array; refuses more or fewer.
+fn row<'f, const N: usize>(file: &'f Checkpoint<'_>, name: &str) -> Result<&'f [f64; N], RunError> {
+    let whole = file.f64(name)?.try_into();
+    whole.map_err(|_| other_version(&format!("`{name}` has another number of values")))
 }
 
-/// A settling balance, from what a checkpoint holds.
-fn settling(counts: &SettlingCounts, recent: &[f64]) -> Settling {
-    Settling {
-        recent: recent.chunks_exact(counts.width.max(1)).map(<[f64]>::to_vec).collect(),
-        best: f64::from_bits(counts.best_bits),
-        best_iteration: counts.best_iteration,
-        evaluations: counts.evaluations,
-        earlier: counts.earlier,
-    }
-}
-
-impl PolarMeta {
+impl Lengths {
     /// The states that are kept, from all their numbers; refuses more or fewer than they are said to have.
-    fn kept(&self, mut numbers: &[f64]) -> Result<Vec<Kept>, RunError> {
-        let mut lengths = self.kept.iter().map(|k| k.2).chain(self.sources.iter().copied());
+    fn states(&self, mut numbers: &[f64]) -> Result<Vec<Kept>, RunError> {
+        let mut lengths = self.0.iter().flat_map(|k| [k.2, k.3]);
         let told = lengths.try_fold(0_usize, usize::checked_add);
-        let whole = told == Some(numbers.len()) && self.sources.len() <= self.kept.len();
-        require(whole, "the states that it keeps have other lengths than it says")?;
+        require(told == Some(numbers.len()), "the states that it keeps have other lengths than it says")?;
         let mut take = |length: usize| {
             let (taken, rest) = numbers.split_at(length);
             numbers = rest;
             taken.to_vec()
         };
-        let mut all = Vec::new();
-        for (k, (factor, point, length)) in self.kept.iter().enumerate() {
-            let (state, sources) = (take(*length), take(self.sources.get(k).copied().unwrap_or(0)));
-            all.push(Kept { factor: *factor, point: *point, state, sources });
-        }
-        Ok(all)
-    }
-}
-
-impl Meta {
-    /// Where a relaxation stands.
-    fn resume(&self, scale: Vec<f64>) -> Resume {
-        let phase = Phase {
-            newton: self.newton,
-            age: self.phase_age,
-            best: f64::from_bits(self.phase_best_bits),
-            best_age: self.phase_best_age,
+        let state = |&(factor, point, state, sources): &(f64, usize, usize, usize)| Kept {
+            factor,
+            point,
+            state: take(state),
+            sources: take(sources),
         };
-        Resume {
-            iteration: self.stage_iteration,
-            cfl: f64::from_bits(self.cfl_bits),
-            linear: self.linear,
-            phase,
-            scale: scale.into(),
-        }
-    }
-
-    /// Where a march stands.
-    fn past(&self, before: Vec<f64>, older: Vec<f64>) -> Past {
-        Past {
-            time: f64::from_bits(self.time_bits),
-            iteration: self.stage_iteration,
-            last: f64::from_bits(self.steps[0]),
-            next: f64::from_bits(self.steps[1]),
-            before,
-            older,
-            reach: if self.broad { Reach::Far } else { Reach::Near },
-            served: self.served,
-            made: f64::from_bits(self.made_bits),
-            unconverged: self.steps[2] as u32,
-            halved: self.halved,
-        }
+        Ok(self.0.iter().map(state).collect())
     }
 }
 
@@ -317,32 +167,21 @@ fn other_version(problem: &dyn std::fmt::Display) -> RunError {
     RunError::OtherVersion { file: FILE, problem: problem.to_string() }
 }
 
-/// Where a march stands, in the terms of a relaxation.
-fn bare(iteration: u32) -> Resume {
-    Resume { iteration, cfl: 0.0, linear: 0, phase: Phase::default(), scale: Arc::default() }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
 
     #[test]
     fn states_that_are_kept_have_the_lengths_that_are_told() {
-        let meta = |lengths: &[usize], sources: &[usize]| PolarMeta {
-            kept: lengths.iter().map(|n| (1.0, 0, *n)).collect(),
-            sources: sources.to_vec(),
-            ..PolarMeta::default()
-        };
-        let kept = meta(&[2, 1], &[0, 1]).kept(&[1.0, 2.0, 3.0, 4.0]).unwrap();
+        let kept = |lengths: &[[usize; 2]]| Lengths(lengths.iter().map(|n| (1.0, 0, n[0], n[1])).collect());
+        let states = kept(&[[2, 0], [1, 1]]).states(&[1.0, 2.0, 3.0, 4.0]).unwrap();
         assert_eq!(
-            (&kept[0].state[..], &kept[1].state[..], &kept[1].sources[..]),
+            (&states[0].state[..], &states[1].state[..], &states[1].sources[..]),
             (&[1.0, 2.0][..], &[3.0][..], &[4.0][..])
         );
-        assert!(PolarMeta::default().kept(&[]).unwrap().is_empty());
-        let others: [(Vec<usize>, Vec<usize>); 4] =
-            [(vec![2], vec![]), (vec![4, 1], vec![]), (vec![usize::MAX, 5], vec![]), (vec![4], vec![0, 0])];
-        for (lengths, sources) in others {
-            assert!(meta(&lengths, &sources).kept(&[0.0; 4]).is_err(), "{lengths:?} {sources:?}");
+        assert!(Lengths::default().states(&[]).unwrap().is_empty());
+        for lengths in [&[[2, 0]][..], &[[4, 0], [1, 0]], &[[usize::MAX, 0], [5, 0]], &[[4, usize::MAX]]] {
+            assert!(kept(lengths).states(&[0.0; 4]).is_err(), "{lengths:?}");
         }
     }
 }

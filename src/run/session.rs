@@ -7,12 +7,12 @@ use super::folder::{self, Hold};
 use super::keeper::FolderKeeper;
 use super::outcome::Outcome;
 use crate::case::Case;
+use crate::claims::{Loops, wall::Wall};
 use crate::observe::loads::Coefficients;
 use crate::problem::{Problem, RunError};
 use crate::study::flow::{self, Bars, Origin, Way};
 use crate::study::keeper::Keeper;
 use crate::study::{IterationHistory, Monitor, Snapshot, Solution, Summary, WallSnapshot};
-use crate::verify::{Loops, wall::Wall};
 
 /// A case that is solved in memory.
 ///

@@ -5,6 +5,7 @@ use super::record::family;
 use super::record::work::Clock;
 use super::record::{Log, Record};
 use crate::case::{Case, Initial};
+use crate::claims::truth::FieldTruth;
 use crate::geometry::Surface;
 use crate::math::{Bounds, Vector};
 use crate::observe::convergence::Convergence;
@@ -20,7 +21,6 @@ use crate::record::summary::{
 };
 use crate::scheme::{Fluid, View};
 use crate::system::System;
-use crate::verify::truth::FieldTruth;
 
 /// The flow at the end, seen in the axes of the case.
 pub(crate) struct Found<'a, const D: usize> {

@@ -1,8 +1,8 @@
 //! What a run in memory leaves.
 use super::look::{Snapshot, WallSnapshot};
 use super::record::IterationHistory;
+use crate::claims::Loops;
 use crate::record::summary::Summary;
-use crate::verify::Loops;
 
 /// Solution of a case: loads, fields, history.
 #[derive(Clone, Debug)]

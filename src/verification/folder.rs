@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use super::WalkError;
 use super::store::spacing_of;
 use crate::case::{Case, Length, read};
-use crate::verify::{ClaimFile, Study};
+use crate::claims::{ClaimFile, Study};
 
 /// Files of one case.
 pub(super) const FILES: [&str; 2] = ["case.toml", "claim.toml"];

@@ -10,11 +10,11 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use crate::case::Case;
+use crate::claims::calibration::{KnownLoad, holding, median_ratio};
+use crate::claims::metric::{BarMetric, FlutterMetric, ForceMetric, StudyMetric};
+use crate::claims::{Claim, ClaimRow, Metric, Sample, Table, metrics};
 use crate::observe::loads::Coefficients;
 use crate::study::Monitor;
-use crate::verify::calibration::{KnownLoad, holding, median_ratio};
-use crate::verify::metric::{BarMetric, FlutterMetric, ForceMetric, StudyMetric};
-use crate::verify::{Claim, ClaimRow, Metric, Sample, Table, metrics};
 use folder::{FILES, respaced, unreadable};
 use measure::{Measured, Value};
 use store::{Found, Job, Kind, Store};

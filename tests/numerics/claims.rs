@@ -2,9 +2,9 @@
 use std::fs;
 use std::path::Path;
 
+use alula::claims::ClaimRow;
 use alula::run::{Monitor, Silent, Tick};
 use alula::verification::{Keep, Selection, Walk, WalkError, times};
-use alula::verify::ClaimRow;
 
 const CASE: &str = "title = \"still\"\ndimension = 2\n[flow]\nmach = 0.5\n[cloud]\nspacing = 0.25\n\
     domain = { min = [0.0, 0.0], max = [1.0, 1.0] }\n[time.explicit]\nuntil = 0.1\ncfl = 0.5\nmethod = \"ssprk3\"\n";

@@ -97,7 +97,7 @@ fn points_that_a_run_did_not_find_are_refused_however_good_the_checksum() {
     let whole = checkpoint::read(&file).unwrap();
     let forged = |change: &dyn Fn(&mut serde_json::Value)| {
         let mut other = whole.clone();
-        change(&mut other.meta["polar"]["record"]["points"][0]);
+        change(&mut other.meta["saved"]["polar"]["points"][0]);
         assert!(other.meta != whole.meta);
         checkpoint::write(&file, &other).unwrap();
         resume(&out, &mut Silent).map(|_| ()).unwrap_err().to_string()

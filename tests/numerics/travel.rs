@@ -5,6 +5,7 @@ use std::sync::Arc;
 
 use crate::common::{case, largest, solver, vortex, with_threads};
 use alula::case::Initial;
+use alula::claims::{FieldTruth, metrics};
 use alula::cloud::Cloud;
 use alula::exact::vortex::IsentropicVortex;
 use alula::math::Vector;
@@ -16,7 +17,6 @@ use alula::time::control::Control;
 use alula::time::dual::{Dual, Plan};
 use alula::time::explicit::{self, Explicit, Method};
 use alula::time::{Integrator, Memory, Past, Standing};
-use alula::verify::{FieldTruth, metrics};
 
 /// Round-off of some tens of steps of fluxes of order one over spacings of some hundredths.
 const ROUND_OFF: f64 = 1e-12;

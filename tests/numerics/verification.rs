@@ -1,9 +1,9 @@
 //! The shortest cases of `verification/`: every claim of theirs must hold.
 use std::path::Path;
 
+use alula::claims::ClaimRow;
 use alula::run::Silent;
 use alula::verification::{Selection, Walk};
-use alula::verify::ClaimRow;
 
 /// Processor seconds of the cases that are judged here; `alula verify --fast` judges more.
 const SECONDS: f64 = 40.0;

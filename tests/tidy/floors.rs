@@ -22,7 +22,7 @@ const FLOORS: [(&str, u8); 22] = [
     ("problem", 5),
     ("record", 5),
     ("report", 6),
-    ("verify", 6),
+    ("claims", 6),
     ("study", 7),
     ("run", 8),
     ("verification", 9),
@@ -40,7 +40,7 @@ const NARROW: [(&str, &[&str]); 10] = [
     ("observe", &["math", "case"]),
     ("record", &["math", "case", "observe"]),
     ("report", &["math", "case", "observe", "record"]),
-    ("verify", &["math", "case", "exact"]),
+    ("claims", &["math", "case", "exact"]),
 ];
 
 /// Modules whose files use one another one way only.

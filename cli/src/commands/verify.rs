@@ -2,12 +2,12 @@
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
+use alula::claims::{Claim, ClaimRow};
 use alula::report::write_verification_page;
 use alula::run::Monitor;
 use alula::verification::{
     Folder, Keep, QUICK, Selection, Spent, TimeTaken, Walk, WalkError, build_of_this_program, find, times,
 };
-use alula::verify::{Claim, ClaimRow};
 use serde_json::{Value, json};
 
 use crate::arguments::{self, Verbosity};

@@ -13,10 +13,10 @@ use super::super::studies::{ForceSource, SmallMotion};
 use super::super::time_left::Portion;
 use super::stages::StageEnd;
 use super::{Bars, Ended, Flow};
+use crate::claims::Loops;
 use crate::coupling::Marches;
 use crate::problem::{ProblemIn, RunError, spacing};
 use crate::system::System;
-use crate::verify::Loops;
 
 /// The flow at the end of a run.
 pub(super) struct GasFlow<'a, S: Marches<D>, const D: usize> {

@@ -2,10 +2,10 @@
 use super::field::{Snapshot, pressure_coefficient};
 use super::friction::wall_friction;
 use crate::case::Case;
+use crate::claims::wall::Wall;
 use crate::math::Vector;
 use crate::scheme::View;
 use crate::scheme::start::free_stream;
-use crate::verify::wall::Wall;
 
 /// Named columns over the interface particles, and the parts of bodies that these stand on.
 ///

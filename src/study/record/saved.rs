@@ -1,6 +1,8 @@
 //! Checkpoints: what a stage cannot rebuild from the case.
 use std::borrow::Cow;
 
+use serde::{Deserialize, Deserializer, Serialize, Serializer};
+
 use super::super::stage::Stage;
 use super::polar::PolarRecord;
 use crate::case::Case;
@@ -10,7 +12,7 @@ use crate::observe::convergence::CloudLoads;
 use crate::observe::table::TableMark;
 use crate::problem::RunError;
 use crate::scheme::{Fluid, Frame, ParticleKinematics, RemapLedger};
-use crate::time::Memory;
+use crate::time::{Memory, Past};
 
 /// Name of the checkpoint in the run folder.
 pub(crate) const FILE: &str = "checkpoint.alula";
@@ -110,11 +112,12 @@ impl LagrangianCheckpoint {
 }
 
 /// What the end of a harmonic balance depends on beside its state.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub(crate) struct Settling {
     /// Coefficients in time of the loads after each of the last iterations.
     pub(crate) recent: Vec<Vec<f64>>,
-    /// Smallest residual.
+    /// Smallest residual; infinite before the first.
+    #[serde(with = "bits")]
     pub(crate) best: f64,
     /// Iteration of that.
     pub(crate) best_iteration: u32,
@@ -130,8 +133,21 @@ impl Default for Settling {
     }
 }
 
-/// A checkpoint in memory.
-#[derive(Clone, Debug)]
+/// A number as its bits: JSON has no infinity.
+mod bits {
+    use super::{Deserialize, Deserializer, Serializer};
+
+    pub(super) fn serialize<S: Serializer>(number: &f64, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.serialize_u64(number.to_bits())
+    }
+
+    pub(super) fn deserialize<'de, D: Deserializer<'de>>(deserializer: D) -> Result<f64, D::Error> {
+        u64::deserialize(deserializer).map(f64::from_bits)
+    }
+}
+
+/// A checkpoint in memory. What serde skips are arrays, which the file holds beside the rest.
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub(crate) struct Saved<'a> {
     /// Index of the stage.
     pub(crate) stage: usize,
@@ -142,8 +158,10 @@ pub(crate) struct Saved<'a> {
     /// Physical time, in the units of the solver.
     pub(crate) time: f64,
     /// State, where it lies while it is written.
+    #[serde(skip)]
     pub(crate) state: Cow<'a, [f64]>,
     /// What the integrator must remember.
+    #[serde(skip, default = "nothing")]
     pub(crate) memory: Memory,
     /// What the end of a harmonic balance is told from.
     pub(crate) settling: Settling,
@@ -162,17 +180,25 @@ pub(crate) struct Saved<'a> {
     /// Linear iterations of the stage.
     pub(crate) linear: u32,
     /// Particles that travel with the fluid.
+    #[serde(skip)]
     pub(crate) lagrangian: Option<LagrangianCheckpoint>,
     /// Sources of refinement, flat.
+    #[serde(skip)]
     pub(crate) sources: Vec<f64>,
     /// The points of a polar so far.
     pub(crate) polar: PolarRecord,
     /// The states that they leave to those to come.
+    #[serde(skip)]
     pub(crate) kept: Cow<'a, [Kept]>,
-    /// What [`equations_of`] says of the case; `None` for polars, and in checkpoints of versions that did not ask.
+    /// What [`equations_of`] says of the case; `None` for polars.
     pub(crate) equations: Option<u32>,
     /// What the tables of the run folder held.
     pub(crate) tables: Vec<TableMark>,
+}
+
+/// What an integrator remembers at the start of a march: nothing.
+fn nothing() -> Memory {
+    Memory::March(Past::default())
 }
 
 /// Checksum of what the equations of a case are made of. A run goes on with these alone: how long it goes on, and what it writes, may

@@ -3,11 +3,11 @@ mod measured;
 
 use serde_json::{Value, json};
 
+use crate::claims::Loops;
 use crate::observe::cycles::Cycles;
 use crate::observe::harmonics::{Harmonics, Periodicity, Window};
 use crate::observe::loads::Coefficients;
 use crate::record::summary::{Change, FirstHarmonics, LastPeriod, PeriodicLoads};
-use crate::verify::Loops;
 
 /// Harmonics that are reported: more where those do not hold the motion, as of several frequencies on their common one.
 const HARMONICS: [usize; 3] = [5, 13, 31];

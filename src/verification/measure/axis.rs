@@ -1,8 +1,8 @@
 //! What stands on the axis of a body: the line through its middle along the stream.
 use super::{Measured, Value};
+use crate::claims::metrics;
 use crate::exact::shock::{normal_shock, rayleigh_pitot_coefficient};
 use crate::math::Vector;
-use crate::verify::metrics;
 
 /// Half-width of the strip along the axis, in local spacings.
 const AXIS: f64 = 2.0;

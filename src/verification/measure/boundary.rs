@@ -1,8 +1,8 @@
 //! What is measured of a flutter boundary.
 use super::Value;
+use crate::claims::Claim;
+use crate::claims::metric::FlutterMetric;
 use crate::record::flutter::{Boundary, FlutterRow};
-use crate::verify::Claim;
-use crate::verify::metric::FlutterMetric;
 
 /// Part by which Mach numbers may differ.
 const SAME: f64 = 1e-9;

@@ -6,9 +6,9 @@ use num_complex::Complex64;
 
 use super::{Value, at_no_thickness, designed_thickness};
 use crate::case::Case;
+use crate::claims::metric::ForceMetric;
+use crate::claims::{Claim, Table};
 use crate::record::gaf::Column;
-use crate::verify::metric::ForceMetric;
-use crate::verify::{Claim, Table};
 
 /// Part by which reduced frequencies may differ.
 const SAME: f64 = 1e-9;

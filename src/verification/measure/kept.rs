@@ -3,11 +3,11 @@ use std::borrow::Cow;
 
 use super::{Measured, Numbers};
 use crate::case::Case;
+use crate::claims::{Loops, Wall};
 use crate::math::Vector;
 use crate::observe::{Array, Checkpoint, Field};
 use crate::run::Session;
 use crate::study::Snapshot;
-use crate::verify::{Loops, Wall};
 
 /// Columns of a solution that claims are about, with their components.
 const COLUMNS: [(&str, usize); 6] =

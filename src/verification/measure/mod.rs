@@ -1,4 +1,4 @@
-//! What is measured of a finished run: the value of each metric of [`crate::verify`].
+//! What is measured of a finished run: the value of each metric of [`crate::claims`].
 mod axis;
 pub(super) mod boundary;
 pub(super) mod forces;
@@ -14,16 +14,16 @@ use num_complex::Complex64;
 pub(super) use numbers::Numbers;
 
 use crate::case::{Case, Shape};
+use crate::claims::metric::{ComparisonMetric, EndMetric, FieldMetric, PeriodicMetric, ThinMetric};
+use crate::claims::metrics;
+use crate::claims::wall::{Wall, contains};
+use crate::claims::{Claim, Curve, FieldTruth, Loops, Metric, Table, WallTruth, loops};
 use crate::exact::blasius::{layer, skin_friction};
 use crate::math::{Bounds, Vector};
 use crate::observe::cycles::Cycles;
 use crate::physics::{Gas, Primitive};
 use crate::scheme::start::free_stream;
 use crate::study::{LastPeriod, Snapshot};
-use crate::verify::metric::{ComparisonMetric, EndMetric, FieldMetric, PeriodicMetric, ThinMetric};
-use crate::verify::metrics;
-use crate::verify::wall::{Wall, contains};
-use crate::verify::{Claim, Curve, FieldTruth, Loops, Metric, Table, WallTruth, loops};
 
 /// Part of the chord in which shocks are looked for: away from the suction peak and the trailing edge.
 const SHOCK_WINDOW: (f64, f64) = (0.05, 0.95);

@@ -2,9 +2,9 @@
 use std::path::Path;
 
 use super::{Measured, no_wall};
+use crate::claims::wall::contains;
+use crate::claims::{Claim, Table};
 use crate::geometry::{dimension, load_surface};
-use crate::verify::wall::contains;
-use crate::verify::{Claim, Table};
 
 impl Measured {
     /// Cp on the walls less that of the reference, at every row of the table `file` of the claim (within its `region`): `y` along the

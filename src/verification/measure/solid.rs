@@ -2,9 +2,9 @@
 use serde::{Deserialize, Serialize};
 
 use super::Value;
+use crate::claims::metric::{EndMetric, SolidMetric};
+use crate::claims::{Claim, Metric};
 use crate::study::{ModeRow, ProbeRow, SolidSummary};
-use crate::verify::metric::{EndMetric, SolidMetric};
-use crate::verify::{Claim, Metric};
 
 /// The numbers of a structure alone that claims are about.
 #[derive(Clone, Debug, Serialize, Deserialize)]

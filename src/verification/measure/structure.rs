@@ -3,9 +3,9 @@ use std::f64::consts::PI;
 
 use super::{Measured, Value, no_other};
 use crate::case::Structure;
+use crate::claims::Claim;
+use crate::claims::metric::StructureMetric;
 use crate::observe::structure::{CoordinateSummary, StructureSummary};
-use crate::verify::Claim;
-use crate::verify::metric::StructureMetric;
 
 impl Measured {
     /// A metric of structures; `claim` names the coordinate.

@@ -1,42 +1,52 @@
 //! Required accuracy of the loads: the table `[accuracy]`.
-use serde::{Deserialize, Serialize};
-
+use super::kinds::COUNT;
 use super::quantity::{Ratio, WallTime};
+use super::schema::{Absent, Kind, Range, defaulted, keys, optional, words};
 
-/// Required accuracy of the loads of a steady case, and the kinds of errors that are estimated in other cases.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Accuracy {
-    /// Half-width of the error bars divided by the loads.
-    pub loads: Ratio,
-    /// Greatest number of particles.
-    pub particles: usize,
-    /// Wall-clock time within which the computation on the last cloud should end.
-    pub time: Option<WallTime>,
-    /// Errors of the loads of a time march or a harmonic balance that are estimated.
-    #[serde(default)]
-    pub error: LoadErrors,
+keys! {
+    /// Required accuracy of the loads of a steady case, and the kinds of errors that are estimated in other cases.
+    #[derive(Copy)]
+    pub struct Accuracy, ACCURACY {
+        /// Half width of the error bars of CL, CD and CM over their value, or over 0.1, 0.01 and 0.02 where that is
+        /// smaller. Polars: 5 %, in 3-D 10 %.
+        loads: Ratio = defaulted(
+            Kind::Quantity(Ratio::DIMENSION, Range { min: 0.0, max: 0.5, closed: false }), Absent::Number(0.01),
+        ),
+        /// Greatest number of particles: the run ends on the finest cloud below it where the error bars are not short
+        /// enough before (in 3-D: 250 000).
+        particles: usize = defaulted(COUNT, Absent::Integer(50_000)),
+        /// Wall-clock time, a plain number in seconds: the run ends on the cloud after which the next, finer one would
+        /// not end within it.
+        time: Option<WallTime> = optional(Kind::Quantity(WallTime::DIMENSION, Range::POSITIVE), "none"),
+        /// Errors of the loads of a march or a harmonic balance that are told, each by one further run. Steady cases
+        /// have a family of clouds.
+        #[serde(default)]
+        error: LoadErrors = defaulted(Kind::Words(LOAD_ERRORS), Absent::Word("none")),
+    }
 }
 
-/// Errors of the loads of a time march or a harmonic balance that are estimated by additional runs.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum LoadErrors {
-    /// No estimate.
-    #[default]
-    None,
-    /// Error due to the spacing of the cloud.
-    Cloud,
-    /// Error due to the time step of a march.
-    Step,
-    /// Error due to the number of harmonics of a harmonic balance.
-    Harmonics,
-    /// Error due to the cloud, and error due to the time step or the number of harmonics.
-    All,
+words! {
+    /// Errors of the loads of a time march or a harmonic balance that are estimated by additional runs.
+    pub enum LoadErrors, LOAD_ERRORS = None {
+        /// none, without a further run
+        None = "none",
+        /// that of the cloud, by a run with twice the spacing: a quarter of the time more in the plane, a tenth in
+        /// space
+        Cloud = "cloud",
+        /// that of the step in time of a march, by a run with twice the step (three quarters of the time more), of
+        /// explicit steps by one with half of it (twice the time more)
+        Step = "step",
+        /// that of the number of harmonics of a balance, by a run with one harmonic less, of one or two with one more:
+        /// about as much time again
+        Harmonics = "harmonics",
+        /// that of the cloud, and that of the step or of the number of harmonics
+        All = "all",
+    }
 }
 
 impl Default for Accuracy {
     fn default() -> Self {
-        Self { loads: Ratio(0.01), particles: 50_000, time: None, error: LoadErrors::None }
+        ACCURACY.value()
     }
 }
 

@@ -3,12 +3,12 @@
 //! Every check looks at values that passed on their own and stays silent about absent ones, so one mistake is told once.
 use serde_json::{Value, json};
 
-use super::body_keys::SHAPES;
+use super::body::SHAPES;
 use super::draft::{Draft, closest, default_name};
 use super::facts::{has_gas, is, is_dimensional};
-use super::keys::SIDES;
 use super::naca::{Naca, TrailingEdge};
 use super::schema::one_of;
+use super::sides::SIDES;
 use super::{Accuracy, initial};
 
 /// Part of the length of a hinge line that must lie across the stream.

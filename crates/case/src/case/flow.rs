@@ -3,7 +3,92 @@
 //! Perfect gas: p = ρ R T, c = √(γ p/ρ), V = M c. Without dimensional values ρ = 1 and c = 1, hence p = 1/γ.
 use serde::{Deserialize, Serialize};
 
-use super::{Body, Flow, Temperature};
+use super::body::Body;
+use super::kinds::{ANGLE, POSITIVE, SIZE};
+use super::quantity::{Angle, Density, Length, Pressure, Temperature, Velocity, Viscosity};
+use super::schema::{Absent, Field, Kind, Range, Table, Variant, defaulted, keys, optional, words};
+
+keys! {
+    /// Free stream, given by `mach` alone (nondimensional: density 1 and sound speed 1) or by dimensional values.
+    pub struct Flow, FLOW {
+        /// Mach number of the free stream; several make a polar.
+        mach: Option<f64> = optional(
+            Kind::Values(&POSITIVE), "`velocity` must be given",
+        ).known_as(&["m", "ma", "mach_number"]),
+        /// Speed of the free stream; needs a dimensional free stream.
+        velocity: Option<Velocity> = optional(
+            Kind::Quantity(Velocity::DIMENSION, Range::POSITIVE), "`mach` must be given",
+        ).known_as(&["speed", "u", "v", "airspeed"]),
+        /// Static pressure of the free stream.
+        pressure: Option<Pressure> = optional(
+            Kind::Quantity(Pressure::DIMENSION, Range::POSITIVE), "nondimensional, or from the other two",
+        ),
+        /// Static temperature of the free stream.
+        temperature: Option<Temperature> = optional(
+            Kind::Quantity(Temperature::DIMENSION, Range::POSITIVE), "nondimensional, or from the other two",
+        ),
+        /// Density of the free stream.
+        density: Option<Density> = optional(
+            Kind::Quantity(Density::DIMENSION, Range::POSITIVE), "nondimensional, or from the other two",
+        ),
+        /// Specific gas constant, J/(kg K); the default is air.
+        gas_constant: f64 = defaulted(POSITIVE, Absent::Number(287.05)),
+        /// Ratio of specific heats.
+        gamma: f64 = defaulted(Kind::Number(Range::above(1.0)), Absent::Number(1.4)),
+        /// The gas keeps the entropy of the free stream, as sound does: for periodic flow that no stream passes
+        /// through, where any distribution of entropy would be a solution. Without viscosity only; shocks lose no total
+        /// pressure.
+        #[serde(default)]
+        isentropic: bool = defaulted(Kind::Flag, Absent::Flag(false)),
+        /// Angle of attack, nose up positive: the flow turns from +x towards +y in 2-D, towards +z in 3-D. Several,
+        /// `"-4:8:1 deg"` or `[-2, 0, 2, 4]`, make a polar: one run through all of them, at every Mach number of
+        /// `mach`. Several without a unit are degrees.
+        #[serde(default)]
+        alpha: Angle = defaulted(
+            Kind::Values(&ANGLE), Absent::Number(0.0),
+        ).known_as(&["aoa", "angle", "angle_of_attack", "incidence"]),
+        /// Sideslip angle, 3-D only: the flow turns towards +y.
+        #[serde(default)]
+        beta: Angle = defaulted(ANGLE, Absent::Number(0.0)),
+        /// Reynolds number ρ∞ U∞ L/μ∞ with L = `reynolds_length`.
+        reynolds: Option<f64> = optional(
+            POSITIVE, "no viscosity, or from `viscosity`",
+        ).known_as(&["re", "reynolds_number"]),
+        /// Length of the Reynolds number.
+        reynolds_length: Option<Length> = optional(SIZE, "the reference chord"),
+        /// Dynamic viscosity of the free stream; needs a dimensional free stream.
+        viscosity: Option<Viscosity> = optional(
+            Kind::Quantity(Viscosity::DIMENSION, Range::POSITIVE), "no viscosity, or from `reynolds`",
+        ),
+        /// How the viscosity depends on temperature.
+        viscosity_law: Option<ViscosityLaw> = optional(Kind::Words(VISCOSITY_LAWS), "`\"sutherland\"`"),
+        /// Constant S of Sutherland's law. The law needs the temperature of the free stream: `temperature`, which may
+        /// stand alone for this purpose, else 288.15 K.
+        sutherland: Option<Temperature> = optional(
+            Kind::Quantity(Temperature::DIMENSION, Range::POSITIVE), "110.4 K, air",
+        ),
+        /// Prandtl number.
+        prandtl: Option<f64> = optional(POSITIVE, "0.72, air"),
+    }
+}
+
+/// Condition of the gas on the surface of a body.
+pub(super) const WALL: &[Variant] = &[
+    Variant::word("slip", "the gas slides along the surface"),
+    Variant::word("adiabatic", "the gas sticks to the surface, no heat passes; needs viscosity"),
+    Variant::table(
+        "temperature",
+        &WALL_TEMPERATURE,
+        "the gas sticks to a surface of this temperature; needs viscosity",
+    ),
+];
+
+static WALL_TEMPERATURE: Table = Table::of(&[Field::required(
+    "value",
+    Kind::Quantity(super::quantity::Temperature::DIMENSION, Range::POSITIVE),
+    "Temperature; over that of the free stream, without unit, when the free stream has none.",
+)])
+.short("value");
 
 /// Sutherland's constant of air (K) (U.S. Standard Atmosphere, 1976).
 const SUTHERLAND: f64 = 110.4;
@@ -17,14 +102,14 @@ pub const NEVER_LAMINAR: f64 = 1e7;
 /// Knudsen number above which the flow is free-molecular (Bird, Molecular Gas Dynamics, section 1.2).
 pub const NO_CONTINUUM: f64 = 10.0;
 
-/// Temperature dependence of the viscosity.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum ViscosityLaw {
-    /// Sutherland's law.
-    Sutherland,
-    /// Constant viscosity.
-    Constant,
+words! {
+    /// Temperature dependence of the viscosity.
+    pub enum ViscosityLaw, VISCOSITY_LAWS {
+        /// μ/μ∞ = (T/T∞)^1.5 (T∞ + S)/(T + S)
+        Sutherland = "sutherland",
+        /// the same everywhere
+        Constant = "constant",
+    }
 }
 
 /// Wall condition: velocity and temperature of the gas at the surface of a body.

@@ -1,58 +1,69 @@
 //! Flutter analysis, as data: Mach numbers, matching, accuracy and options.
 pub(super) mod check;
-pub(super) mod keys;
 mod limit_cycles;
 
-use serde::{Deserialize, Serialize};
+use super::Case;
+use super::kinds::{PART, POSITIVE};
+use super::quantity::{Time, Velocity};
+use super::schema::{Absent, Kind, List, Range, defaulted, keys, optional, words};
+use super::time::Temporal;
 
+pub(super) use limit_cycles::LIMIT_CYCLES;
 pub use limit_cycles::{GasResponse, LimitCycles};
 
-use super::quantity::Velocity;
-use super::{Case, Temporal, Time};
-
-/// The table `[flutter]`: settings of the flutter analysis.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Flutter {
-    /// Mach numbers; empty: the one of `[flow]`.
-    #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    pub mach: Vec<f64>,
-    /// Reduced frequencies at which forces are computed first; empty: those of [`Self::first`].
-    #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    pub reduced_frequencies: Vec<f64>,
-    /// The quantity of the stream that is varied.
-    #[serde(rename = "match")]
-    pub matching: Matching,
-    /// Upper bound of the search: speed relative to that of the structure, or density relative to that of the case
-    /// where density is varied.
-    pub most: f64,
-    /// Relative difference of the flutter speed between two successive interpolations at which the refinement ends.
-    pub accuracy: f64,
-    /// Greatest number of reduced frequencies.
-    pub frequencies: u32,
-    /// True when forces are computed about the static aeroelastic equilibrium at the first flutter point.
-    pub trim: bool,
-    /// True when the aeroelastic system is also written in state-space form.
-    pub state_space: bool,
-    /// True when the limiter keeps the values of the steady flow.
-    pub frozen_limiter: bool,
-    /// True when flutter points and damping are also computed on a coarser cloud, for an error estimate.
-    pub cloud_error: bool,
-    /// Design dive speed V_D as equivalent airspeed, relative to which margins are reported.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub design_speed: Option<Velocity>,
+keys! {
+    /// The table `[flutter]`: settings of the flutter analysis.
+    pub struct Flutter, FLUTTER {
+        /// Mach numbers at which the boundary is sought.
+        #[serde(default, skip_serializing_if = "Vec::is_empty")]
+        mach: Vec<f64> = optional(
+            Kind::List(&List { item: POSITIVE, min: 1, max: 64, single: true }), "that of `[flow]`",
+        ),
+        /// Reduced frequencies k = ωb/U∞, b half of the reference chord, at which forces are computed first; zero is
+        /// always among them. More are added near each crossing.
+        #[serde(default, skip_serializing_if = "Vec::is_empty")]
+        reduced_frequencies: Vec<f64> = optional(
+            Kind::List(&List { item: POSITIVE, min: 2, max: 64, single: false }), "0.02, 0.08, 0.2 and 0.5",
+        ),
+        /// What is varied at a Mach number until a motion neither grows nor decays.
+        matching as "match": Matching = defaulted(Kind::Words(MATCHING), Absent::Word("none")),
+        /// Greatest speed that is looked at, over that of the structure (`reduced_speed`, `speed_index`, or the free
+        /// stream); with `match = "density"` greatest density over that of the case. Altitudes are looked at from 5 km
+        /// below the sea.
+        most: f64 = defaulted(Kind::Number(Range { min: 0.0, max: 1000.0, closed: false }), Absent::Number(4.0)),
+        /// Part by which a speed may change when a frequency is left out.
+        accuracy: f64 = defaulted(PART, Absent::Number(0.005)),
+        /// Greatest number of frequencies at a Mach number.
+        frequencies: u32 = defaulted(Kind::Integer(3, 64), Absent::Integer(12)),
+        /// Forces are those about the static equilibrium of structure and gas at the first crossing, which is sought
+        /// with it; else about the bodies as drawn.
+        trim: bool = defaulted(Kind::Flag, Absent::Flag(false)),
+        /// Write the structure in the stream as a linear system of first order as well, at the first crossing of each
+        /// Mach number.
+        state_space: bool = defaulted(Kind::Flag, Absent::Flag(false)),
+        /// In small motions the limiter, and where it takes shocks to be, stay what they are in the steady flow. Else
+        /// forces are those that the equations of a march have in a motion that is small enough.
+        frozen_limiter: bool = defaulted(Kind::Flag, Absent::Flag(false)),
+        /// Tell the error that the spacing leaves in each speed, from a cloud with twice of it, and with 3/2 of it
+        /// where there are shocks, and where it decides whether motions grow.
+        cloud_error: bool = defaulted(Kind::Flag, Absent::Flag(true)),
+        /// Design speed V_D, an equivalent airspeed (EAS): margins are told against it, and whether 1.15 V_D are free
+        /// of flutter and divergence.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        design_speed: Option<Velocity> = optional(Kind::Quantity(Velocity::DIMENSION, Range::POSITIVE), "no margins"),
+    }
 }
 
-/// Quantity of the stream that is varied at constant Mach number (matching).
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum Matching {
-    /// Speed and sound speed at the density of the case; the atmosphere is not matched.
-    #[default]
-    None,
-    /// Density at the sound speed of the case, as in a wind tunnel.
-    Density,
-    /// Altitude in the standard atmosphere, which determines density and sound speed.
-    Altitude,
+words! {
+    /// Quantity of the stream that is varied at constant Mach number (matching).
+    pub enum Matching, MATCHING = None {
+        /// the speed, and the sound speed with it, at the density of the case
+        None = "none",
+        /// the density, at the sound speed of the case: a wind tunnel
+        Density = "density",
+        /// the altitude in the standard atmosphere of 1976: speed, density and Mach number belong together
+        Altitude = "altitude",
+    }
 }
 
 impl Flutter {

@@ -1,74 +1,95 @@
 //! Generalised aerodynamic forces, as data: modes, reduced frequencies and method.
-use serde::{Deserialize, Serialize};
+use super::kinds::{POSITIVE, SIZE};
+use super::motion::{BodyMotionSpec, ModeMotion, OwnFrequency, ParticleMotion, Pitch, Plunge};
+use super::quantity::{Angle, Length, Ratio};
+use super::schema::{Absent, Kind, List, Range, defaulted, keys, optional, required, words};
+use super::structure::{Freedom, Structure, StructureMode, StructureModel};
 
-use super::{
-    Angle, BodyMotionSpec, Freedom, Length, ModeMotion, OwnFrequency, ParticleMotion, Pitch, Plunge, Structure,
-    StructureMode, StructureModel,
-};
+/// Zero or more.
+const NOT_NEGATIVE: Kind = Kind::Number(Range { min: 0.0, max: f64::INFINITY, closed: true });
 
-/// The table `[gaf]`: settings of the generalised aerodynamic forces.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Gaf {
-    /// Reduced frequencies k = ωL/U∞.
-    pub reduced_frequencies: Vec<f64>,
-    /// Length L of the reduced frequency; absent: half the reference chord.
-    pub reduced_length: Option<Length>,
-    /// Rigid-body modes, in the order of the columns.
-    pub modes: Vec<Mode>,
-    /// Flexible modes, in the columns after the rigid-body modes.
-    #[serde(default, rename = "mode")]
-    pub flexible: Vec<FlexibleMode>,
-    /// Centre of rotation of pitch, about which moments are taken.
-    pub pivot: Option<Vec<Length>>,
-    /// Method by which the forces are computed.
-    pub method: GafMethod,
-    /// Amplitude of pitch for the harmonic balance; absent: [`Self::PITCH`].
-    pub pitch: Option<Angle>,
-    /// Amplitude of plunge for the harmonic balance; absent: [`Self::PLUNGE`].
-    pub plunge: Option<Length>,
-    /// How the particles follow plunge and pitch.
-    pub particles: ParticleMotion,
-    /// Number of harmonics; absent: one.
-    pub harmonics: Option<u32>,
-    /// Relative change of a column on halving the amplitude above which it is reported as nonlinear; absent:
-    /// [`Self::LINEARITY`].
-    pub linearity: Option<f64>,
-    /// True when the limiter keeps the values of the steady flow.
-    #[serde(default)]
-    pub frozen_limiter: bool,
-    /// True when the matrices have error bars, computed on a cloud with twice the spacing.
-    pub cloud_error: bool,
+const FOLLOWING: &[(&str, &str)] = &[
+    ("rigid", "the whole cloud moves as one with the body"),
+    ("deforming", "the displacement of the surface is spread into the cloud, the far field stays where it is"),
+];
+
+keys! {
+    /// The table `[gaf]`: settings of the generalised aerodynamic forces.
+    pub struct Gaf, GAF {
+        /// Reduced frequencies k = ωL/U∞; 0 is a displacement at rest.
+        reduced_frequencies: Vec<f64> = required(
+            Kind::List(&List { item: NOT_NEGATIVE, min: 1, max: 64, single: true }),
+        ),
+        /// Length L of the reduced frequency.
+        reduced_length: Option<Length> = optional(SIZE, "half of the reference chord"),
+        /// Rigid modes, in the order of the columns; those of `[[gaf.mode]]` follow.
+        modes: Vec<Mode> = defaulted(
+            Kind::List(&List { item: Kind::Words(MODES), min: 0, max: 2, single: true }),
+            Absent::Words(&["plunge", "pitch"]),
+        ),
+        /// A mode of a flexible body. Its cloud is always a deforming one.
+        #[serde(default)]
+        flexible as "mode": Vec<FlexibleMode> = defaulted(Kind::Tables(&FLEXIBLE), Absent::Filled),
+        /// Point about which the body pitches and moments are taken.
+        pivot: Option<Vec<Length>> = optional(
+            Kind::List(&List { item: Kind::Quantity(Length::DIMENSION, Range::ANY), min: 2, max: 3, single: false }),
+            "must be given for `pitch`",
+        ),
+        /// How forces are found.
+        method: GafMethod = optional(
+            Kind::Words(METHODS),
+            "`linear`, or `balance` where there are `pitch`, `plunge`, `harmonics`, `linearity`, an `amplitude`, \
+             or bodies with a motion of their own",
+        ),
+        /// Amplitude of pitch with `method = "balance"`. It is halved once to see whether forces are linear.
+        pitch: Option<Angle> = optional(Kind::Quantity(Angle::DIMENSION, Range::ANY), "a quarter of a degree"),
+        /// Amplitude of plunge with `method = "balance"`.
+        plunge: Option<Length> = optional(SIZE, "0.005"),
+        /// How particles follow plunge and pitch. With `method = "linear"` and a `[[gaf.mode]]` they always deform.
+        particles: ParticleMotion = defaulted(Kind::Words(FOLLOWING), Absent::Word("rigid")),
+        /// Number of harmonics with `method = "balance"`.
+        harmonics: Option<u32> = optional(Kind::Integer(1, 16), "1"),
+        /// Part by which forces may change when the amplitude is halved, with `method = "balance"`.
+        linearity: Option<f64> = optional(Kind::Quantity(Ratio::DIMENSION, Range::POSITIVE), "0.005"),
+        /// In small motions the limiter, and where it takes shocks to be, stay what they are in the steady flow. Else
+        /// forces are those that the equations of a march have in a motion that is small enough.
+        #[serde(default)]
+        frozen_limiter: bool = defaulted(Kind::Flag, Absent::Flag(false)),
+        /// Give every entry an error bar, from its change on a cloud with twice the spacing, and with 3/2 of it where
+        /// there are shocks.
+        cloud_error: bool = defaulted(Kind::Flag, Absent::Flag(true)),
+    }
 }
 
-/// Method by which generalised aerodynamic forces are computed.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum GafMethod {
-    /// Linearisation about the steady flow: one linear system for each mode and frequency.
-    Linear,
-    /// Two harmonic balances for each mode and frequency, with the full and half the amplitude.
-    Balance,
+words! {
+    /// Method by which generalised aerodynamic forces are computed.
+    pub enum GafMethod, METHODS {
+        /// small motion about one steady flow: a linear system for each mode and frequency
+        Linear = "linear",
+        /// two harmonic balances for each mode and frequency, with an amplitude and half of it
+        Balance = "balance",
+    }
+
+    /// A rigid-body mode.
+    pub enum Mode, MODES {
+        /// displacement, up positive
+        Plunge = "plunge",
+        /// angle about the pivot, nose up positive
+        Pitch = "pitch",
+    }
 }
 
-/// A rigid-body mode.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum Mode {
-    /// Displacement, up positive.
-    Plunge,
-    /// Angle about the pivot, nose up positive.
-    Pitch,
-}
-
-/// A flexible mode.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct FlexibleMode {
-    /// Name of the mode.
-    pub name: String,
-    /// File of the mode shape, see [`super::read_mode`].
-    pub file: String,
-    /// Amplitude of the modal coordinate; required by the harmonic balance.
-    pub amplitude: Option<f64>,
+keys! {
+    /// A flexible mode.
+    pub struct FlexibleMode, FLEXIBLE {
+        /// Name of its row and column, and of its folders: letters, digits, `-` and `_`.
+        name: String = required(Kind::Text),
+        /// CSV file of the shape, relative to the case file: columns `x`, `y` (`z`) of points of the body as placed,
+        /// and `dx`, `dy` (`dz`), their displacements when the coordinate is one.
+        file: String = required(Kind::File),
+        /// Amplitude of the coordinate with `method = "balance"`: displacements of half a per cent of the chord serve.
+        amplitude: Option<f64> = optional(POSITIVE, "must be given for `method = \"balance\"`"),
+    }
 }
 
 /// A mode of `[gaf]`, rigid or flexible.

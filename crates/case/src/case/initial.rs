@@ -1,11 +1,69 @@
-//! The field at the start: data, and the check of what a case says of it.
+//! The field at the start: its keys, the data, and the check of what a case says of it.
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
-use super::Units;
 use super::draft::Draft;
 use super::facts::{formula_in, is, is_dimensional};
+use super::flow::Units;
 use super::formula::Formula;
+use super::kinds::PLANE_POINT;
+use super::schema::{Absent, Field, Kind, List, Range, Table, Variant};
+
+const ANY: Kind = Kind::Number(Range::ANY);
+const STATE: Kind = Kind::List(&List { item: ANY, min: 3, max: 3, single: false });
+
+pub(super) const INITIAL: &[Variant] = &[
+    Variant::word("free_stream", "free stream everywhere"),
+    Variant::table("riemann", &RIEMANN, "two states on either side of a plane"),
+    Variant::table(
+        "vortex",
+        &VORTEX,
+        "isentropic vortex (Shu 1998), density and pressure 1 far away; in 3-D a column along z",
+    ),
+    Variant::word("ringleb", "Ringleb's flow, stagnation density and sound speed 1, 2-D"),
+    Variant::table(
+        "formula",
+        &FORMULA_FIELD,
+        "formulas of the position: a velocity profile of a channel, a pulse of pressure",
+    ),
+];
+
+static FORMULA_FIELD: Table = Table::of(&[
+    Field::required(
+        "velocity",
+        Kind::List(&List { item: Kind::Formula, min: 2, max: 3, single: false }),
+        "Velocity, a number or a formula in `x`, `y`, `z` for each axis, `[\"6 * y * (1 - y)\", 0]`: m/s with a dimensional free stream, else over its sound speed.",
+    ),
+    Field::optional(
+        "density",
+        Kind::Formula,
+        "that of the free stream",
+        "Density, a number or a formula: kg/m3 with a dimensional free stream, else over that of the free stream.",
+    ),
+    Field::optional(
+        "pressure",
+        Kind::Formula,
+        "that of the free stream",
+        "Pressure, a number or a formula: Pa with a dimensional free stream, else over ρ∞ a∞², so that the free stream has 1/γ.",
+    ),
+]);
+
+static RIEMANN: Table = Table::of(&[
+    Field::required(
+        "left",
+        STATE,
+        "Left state: density, velocity along `axis`, pressure; SI units with a dimensional free stream.",
+    ),
+    Field::required("right", STATE, "Right state: density, velocity along `axis`, pressure, in the same units."),
+    Field::defaulted("position", ANY, Absent::Number(0.0), "Position of the plane."),
+    Field::defaulted("axis", Kind::Integer(0, 2), Absent::Integer(0), "Axis across the plane, 0 for x."),
+]);
+
+static VORTEX: Table = Table::of(&[
+    Field::required("strength", ANY, "Strength β."),
+    Field::required("centre", PLANE_POINT, "Centre at the start, in the plane of x and y."),
+    Field::required("velocity", PLANE_POINT, "Mean velocity."),
+]);
 
 /// Initial field.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]

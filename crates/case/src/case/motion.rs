@@ -5,161 +5,186 @@
 //! and the coordinates q of its modes. Sines are amplitude·sin(ωt + phase): α = α_m + α_0 sin ωt as in the AGARD cases,
 //! with the mean α_m from `flow.alpha` or
 //! `rotate`. Pitch is nose up positive and plunge is up positive.
-use serde::{Deserialize, Serialize};
+use super::Case;
+use super::body::Shape;
+use super::flow::Flow;
+use super::kinds::{ANGLE, LENGTH, POINT, POSITIVE, SIZE};
+use super::quantity::{Angle, Frequency, Length, Rate, Time, Velocity};
+use super::schema::{Absent, Kind, List, Range, defaulted, keys, optional, required, words};
+use super::time::Temporal;
 
-use super::{Angle, Case, Flow, Frequency, Length, Rate, Shape, Temporal, Time, Velocity};
+/// A direction in two or three dimensions.
+const DIRECTION: Kind = Kind::List(&List { item: Kind::Number(Range::ANY), min: 2, max: 3, single: false });
+const ONE: &str = "another of `frequency`, `reduced_frequency` and `period`";
+const STILL: &str = "no such part";
+const OWN: &str = "that of the motion";
+static LENGTHS: List =
+    List { item: Kind::Quantity(Length::DIMENSION, Range::ANY), min: 2, max: usize::MAX, single: false };
+static ANGLES: List =
+    List { item: Kind::Quantity(Angle::DIMENSION, Range::ANY), min: 2, max: usize::MAX, single: false };
+static TIMES: List = List { item: Kind::Quantity(Time::DIMENSION, Range::ANY), min: 2, max: usize::MAX, single: false };
 
-/// The table `[motion]`: motion of the particles, and motion of every body without a motion of its own.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Motion {
+keys! {
+    /// The table `[motion]`: motion of the particles, and motion of every body without a motion of its own.
+    pub struct Motion, MOTION.with_keys_of(&BODY_MOTION) {
+        /// How particles follow the bodies.
+        particles: ParticleMotion = defaulted(Kind::Words(PARTICLES), Absent::Word("deforming")),
+    } and {
+        /// Motion of every body without a motion of its own; without bodies, motion of the cloud.
+        #[serde(flatten)]
+        law: BodyMotionSpec,
+    }
+}
+
+words! {
     /// How the particles follow the bodies.
-    pub particles: ParticleMotion,
-    /// Motion of every body without a motion of its own; without bodies, motion of the cloud.
-    #[serde(flatten)]
-    pub law: BodyMotionSpec,
+    pub enum ParticleMotion, PARTICLES = Deforming {
+        /// the whole cloud moves as one with the body
+        Rigid = "rigid",
+        /// the displacement of the surface is spread into the cloud, the far field stays where it is
+        Deforming = "deforming",
+        /// particles travel with the fluid
+        Lagrangian = "lagrangian",
+    }
 }
 
-/// How the particles follow the bodies.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum ParticleMotion {
-    /// The whole cloud moves rigidly with the body.
-    Rigid,
-    /// The displacement of the surface is continued into the cloud and decays towards the far field.
-    #[default]
-    Deforming,
-    /// The particles move with the fluid (Lagrangian).
-    Lagrangian,
-}
+keys! {
+    /// Motion of one body as the sum of its parts; without parts the body is at rest.
+    #[derive(Default)]
+    pub struct BodyMotionSpec, BODY_MOTION {
+        /// Frequency of pitch and plunge, and `omega` of formulas; needs a dimensional free stream.
+        frequency: Option<Frequency> = optional(Kind::Quantity(Frequency::DIMENSION, Range::POSITIVE), ONE),
+        /// Reduced frequency k = ωL/U∞ instead, with L = `reduced_length` and the speed U∞ of the free stream.
+        reduced_frequency: Option<f64> = optional(POSITIVE, ONE),
+        /// Length L of the reduced frequency; give the chord itself when k = ωc/U∞ is meant.
+        reduced_length: Option<Length> = optional(SIZE, "half of the reference chord"),
+        /// Period 2π/ω instead, in seconds or lengths over sound speed.
+        period: Option<Time> = optional(Kind::Quantity(Time::DIMENSION, Range::POSITIVE), ONE),
+        /// Point about which the body turns, at its place before any motion; it travels with the displacement.
+        pivot: Option<Vec<Length>> = optional(POINT, "must be given when the body turns"),
+        /// Axis of the turn (3-D only), right-handed. In 2-D angles are nose up positive: clockwise.
+        axis: Option<Vec<f64>> = optional(
+            DIRECTION, "+y in 3-D: nose up positive for a stream along +x with lift along +z",
+        ),
+        /// Angle amplitude·sin(ωt + phase), nose up positive; the mean angle is `flow.alpha` or `rotate` of the body.
+        /// `pitch = "2 deg"` is an amplitude alone. Several in a list add up, each with a frequency of its own where it
+        /// has one.
+        #[serde(default)]
+        pitch: Vec<Pitch> = defaulted(Kind::Tables(&PITCH_KEYS), Absent::Filled),
+        /// Displacement amplitude·sin(ωt + phase), up positive. `plunge = 0.1` is an amplitude alone. Several in a list
+        /// add up.
+        #[serde(default)]
+        plunge: Vec<Plunge> = defaulted(Kind::Tables(&PLUNGE_KEYS), Absent::Filled),
+        /// Angle rate·t with the sign of pitch, `rotation = "10 deg/s"`.
+        rotation: Option<Rotation> = optional(Kind::Table(&ROTATION_KEYS), STILL),
+        /// Displacement velocity·t, `translation = [0.1, 0]`.
+        translation: Option<Translation> = optional(Kind::Table(&TRANSLATION_KEYS), STILL),
+        /// Displacement and angle at given times, joined by cubic splines: lists, or a file `table = "motion.csv"`.
+        table: Option<MotionTable> = optional(Kind::Table(&TABLE_KEYS), STILL),
+        /// Formulas in `t`, the time of the case (seconds, or lengths over sound speed without a dimensional free
+        /// stream), with `omega`, `pi`, `e`, `deg`, the operators `+ - * / ^` and the functions `sin`, `cos`, `tan`,
+        /// `asin`, `acos`, `atan`, `sinh`, `cosh`, `tanh`, `exp`, `ln`, `sqrt`, `abs`, `min`, `max`.
+        formula: Option<MotionFormula> = optional(Kind::Table(&FORMULA_KEYS), STILL),
+        /// A mode of a flexible body: every point X goes q·φ(X) before all other parts, with the coordinate q =
+        /// amplitude·sin(ωt + phase). Needs a deforming cloud.
+        #[serde(default)]
+        modes as "mode": Vec<ModeMotion> = defaulted(Kind::Tables(&MODE_KEYS), Absent::Filled),
+    }
 
-/// Motion of one body as the sum of its parts; without parts the body is at rest.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct BodyMotionSpec {
-    /// Frequency of pitch, plunge and modes.
-    pub frequency: Option<Frequency>,
-    /// Reduced frequency k = ωL/U∞, an alternative to `frequency`.
-    pub reduced_frequency: Option<f64>,
-    /// Length L of the reduced frequency; absent: half the reference chord.
-    pub reduced_length: Option<Length>,
-    /// Period 2π/ω, an alternative to `frequency`.
-    pub period: Option<Time>,
-    /// Centre of rotation in the initial placement; it moves with the displacement.
-    pub pivot: Option<Vec<Length>>,
-    /// Axis of rotation in 3-D, right-handed; absent: +y, which is nose up positive for a stream along +x with lift
-    /// along +z.
-    pub axis: Option<Vec<f64>>,
-    /// Sinusoidal rotations.
-    #[serde(default)]
-    pub pitch: Vec<Pitch>,
-    /// Sinusoidal displacements.
-    #[serde(default)]
-    pub plunge: Vec<Plunge>,
-    /// Rotation at a constant rate.
-    pub rotation: Option<Rotation>,
-    /// Translation at a constant velocity.
-    pub translation: Option<Translation>,
-    /// Tabulated displacement and angle.
-    pub table: Option<MotionTable>,
-    /// Displacement and angle as formulas of time.
-    pub formula: Option<MotionFormula>,
-    /// Modes of a flexible body.
-    #[serde(default, rename = "mode")]
-    pub modes: Vec<ModeMotion>,
-}
+    /// Prescribed motion of a mode: coordinate q(t) = amplitude·sin(ωt + phase) and the file of the shape φ.
+    pub struct ModeMotion, MODE_KEYS {
+        /// CSV file of the shape, relative to the case file: columns `x`, `y` (`z`) of points of the body as placed,
+        /// and `dx`, `dy` (`dz`), their displacements when the coordinate is one.
+        file: String = required(Kind::File),
+        /// Amplitude of the coordinate.
+        amplitude: f64 = required(Kind::Number(Range::ANY)),
+        /// Phase at t = 0; `"90 deg"` makes the sine a cosine.
+        phase: Angle = defaulted(ANGLE, Absent::Number(0.0)),
+    }
 
-/// Prescribed motion of a mode: coordinate q(t) = amplitude·sin(ωt + phase) and the file of the shape φ.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct ModeMotion {
-    /// CSV file of points and displacements, see [`super::read_mode`].
-    pub file: String,
-    /// Amplitude of the coordinate.
-    pub amplitude: f64,
-    /// Phase at t = 0.
-    pub phase: Angle,
-}
+    /// Sinusoidal rotation θ(t) = amplitude·sin(ωt + phase), nose up positive.
+    pub struct Pitch, PITCH_KEYS.short("amplitude").with_keys_of(&OWN_FREQUENCY) {
+        /// Amplitude.
+        amplitude: Angle = required(ANGLE),
+        /// Phase at t = 0; `"90 deg"` makes the sine a cosine.
+        phase: Angle = defaulted(ANGLE, Absent::Number(0.0)),
+    } and {
+        /// Frequency of this part, if it differs from that of the motion.
+        #[serde(flatten)]
+        own: OwnFrequency,
+    }
 
-/// Sinusoidal rotation θ(t) = amplitude·sin(ωt + phase), nose up positive.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Pitch {
-    /// Amplitude.
-    pub amplitude: Angle,
-    /// Phase at t = 0.
-    pub phase: Angle,
-    /// Frequency of this part, if it differs from that of the motion.
-    #[serde(flatten)]
-    pub own: OwnFrequency,
-}
+    /// Sinusoidal displacement d(t) = amplitude·sin(ωt + phase)·direction.
+    pub struct Plunge, PLUNGE_KEYS.short("amplitude").with_keys_of(&OWN_FREQUENCY) {
+        /// Amplitude of the displacement.
+        amplitude: Length = required(LENGTH),
+        /// Phase at t = 0; `"90 deg"` makes the sine a cosine.
+        phase: Angle = defaulted(ANGLE, Absent::Number(0.0)),
+        /// Direction of positive displacement; its length does not matter.
+        direction: Option<Vec<f64>> = optional(DIRECTION, "up: +y in 2-D, +z in 3-D"),
+    } and {
+        /// Frequency of this part, if it differs from that of the motion.
+        #[serde(flatten)]
+        own: OwnFrequency,
+    }
 
-/// Sinusoidal displacement d(t) = amplitude·sin(ωt + phase)·direction.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Plunge {
-    /// Amplitude of the displacement.
-    pub amplitude: Length,
-    /// Phase at t = 0.
-    pub phase: Angle,
-    /// Direction of positive displacement, normalised; absent: up, +y in 2-D and +z in 3-D.
-    pub direction: Option<Vec<f64>>,
-    /// Frequency of this part, if it differs from that of the motion.
-    #[serde(flatten)]
-    pub own: OwnFrequency,
-}
+    /// Frequency of one part of a motion; absent: that of the motion.
+    #[derive(Copy, Default)]
+    pub struct OwnFrequency, OWN_FREQUENCY {
+        /// Frequency of this part alone; needs a dimensional free stream. Frequencies of one motion are whole multiples
+        /// of a common one.
+        frequency: Option<Frequency> = optional(Kind::Quantity(Frequency::DIMENSION, Range::POSITIVE), OWN),
+        /// Reduced frequency of this part, with `reduced_length` of the motion.
+        reduced_frequency: Option<f64> = optional(POSITIVE, OWN),
+        /// Period of this part instead.
+        period: Option<Time> = optional(Kind::Quantity(Time::DIMENSION, Range::POSITIVE), OWN),
+    }
 
-/// Frequency of one part of a motion; absent: that of the motion.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct OwnFrequency {
-    /// Frequency.
-    pub frequency: Option<Frequency>,
-    /// Reduced frequency k = ωL/U∞ with the length L of the motion, an alternative to `frequency`.
-    pub reduced_frequency: Option<f64>,
-    /// Period 2π/ω, an alternative to `frequency`.
-    pub period: Option<Time>,
-}
+    /// θ(t) = rate·t.
+    pub struct Rotation, ROTATION_KEYS.short("rate") {
+        /// Rate; a plain number is radians per unit of time.
+        rate: Rate = required(Kind::Quantity(Rate::DIMENSION, Range::ANY)),
+    }
 
-/// θ(t) = rate·t.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Rotation {
-    /// Angular velocity, positive in the same sense as pitch.
-    pub rate: Rate,
-}
+    /// d(t) = velocity·t.
+    pub struct Translation, TRANSLATION_KEYS.short("velocity") {
+        /// Velocity.
+        velocity: Vec<Velocity> = required(
+            Kind::List(&List { item: Kind::Quantity(Velocity::DIMENSION, Range::ANY), min: 2, max: 3, single: false }),
+        ),
+    }
 
-/// d(t) = velocity·t.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Translation {
-    /// Velocity.
-    pub velocity: Vec<Velocity>,
-}
+    /// Displacement and angle at given times, interpolated by cubic splines.
+    pub struct MotionTable, TABLE_KEYS.short("file") {
+        /// CSV file, relative to the case file, with columns `time` and any of `x`, `y`, `z`, `angle_deg`, `angle_rad`.
+        file: Option<String> = optional(Kind::File, "the lists `time`, `x`, …"),
+        /// Times, rising.
+        time: Option<Vec<Time>> = optional(Kind::List(&TIMES), "`file` must be given"),
+        /// Displacements along x.
+        x: Option<Vec<Length>> = optional(Kind::List(&LENGTHS), "zero"),
+        /// Displacements along y.
+        y: Option<Vec<Length>> = optional(Kind::List(&LENGTHS), "zero"),
+        /// Displacements along z (3-D).
+        z: Option<Vec<Length>> = optional(Kind::List(&LENGTHS), "zero"),
+        /// Angles, of the sign of pitch.
+        angle: Option<Vec<Angle>> = optional(Kind::List(&ANGLES), "zero"),
+        /// The table repeats, its last row is its first one a period later; else it begins and ends at rest and its
+        /// ends are held.
+        periodic: bool = defaulted(Kind::Flag, Absent::Flag(false)),
+    }
 
-/// Displacement and angle at given times, interpolated by cubic splines.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct MotionTable {
-    /// CSV file in place of the lists, with the columns `time` and any of `x`, `y`, `z`, `angle_deg`, `angle_rad`.
-    pub file: Option<String>,
-    /// Times in ascending order.
-    pub time: Option<Vec<Time>>,
-    /// Displacements along x.
-    pub x: Option<Vec<Length>>,
-    /// Displacements along y.
-    pub y: Option<Vec<Length>>,
-    /// Displacements along z.
-    pub z: Option<Vec<Length>>,
-    /// Angles.
-    pub angle: Option<Vec<Angle>>,
-    /// True when the table repeats; otherwise the motion starts and ends with zero velocity and stays at its end
-    /// positions.
-    pub periodic: bool,
-}
-
-/// Displacements and angle (radians) as formulas of the time `t` of the case.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct MotionFormula {
-    /// Displacement along x.
-    pub x: Option<String>,
-    /// Displacement along y.
-    pub y: Option<String>,
-    /// Displacement along z.
-    pub z: Option<String>,
-    /// Angle in radians.
-    pub angle: Option<String>,
+    /// Displacements and angle (radians) as formulas of the time `t` of the case.
+    #[derive(Default)]
+    pub struct MotionFormula, FORMULA_KEYS {
+        /// Displacement along x, `x = "0.1 * cos(omega * t)"`.
+        x: Option<String> = optional(Kind::Text, "zero"),
+        /// Displacement along y.
+        y: Option<String> = optional(Kind::Text, "zero"),
+        /// Displacement along z (3-D).
+        z: Option<String> = optional(Kind::Text, "zero"),
+        /// Angle in radians, of the sign of pitch: `"2 * deg * sin(omega * t)"`.
+        angle: Option<String> = optional(Kind::Text, "zero"),
+    }
 }
 
 impl BodyMotionSpec {

@@ -9,28 +9,29 @@
 //! this is the extent of the uniform load of the mean line (default 1). Jacobs, Ward and Pinkerton, NACA report 460
 //! (1933); Jacobs and Pinkerton, report 537 (1935); Stack and von Doenhoff, report 492 (1934); Abbott, von Doenhoff and
 //! Stivers, report 824 (1945); Loftin, report 903 (1948).
-use serde::{Deserialize, Serialize};
+use super::schema::{Absent, Kind, defaulted, keys, required, words};
 
-/// A NACA section.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Naca {
-    /// Designation, for example `0012`, `23012`, `0012-64`, `63-415` or `64A010`.
-    pub digits: String,
-    /// Shape of the trailing edge.
-    pub trailing_edge: TrailingEdge,
+keys! {
+    /// A NACA section.
+    pub struct Naca, NACA.short("digits") {
+        /// Its designation.
+        digits: String = required(Kind::Matching("^([Nn][Aa][Cc][Aa][ _-]?)?[0-9].{3,}$")),
+        /// How the section ends.
+        trailing_edge: TrailingEdge = defaulted(Kind::Words(TRAILING_EDGES), Absent::Word("closed")),
+    }
 }
 
-/// Shape of the trailing edge of a NACA section.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum TrailingEdge {
-    /// Sharp: both sides meet at x/c = 1; last thickness coefficient −0.1036, in a modified form zero thickness there.
-    Closed,
-    /// As published, with a base: last thickness coefficient −0.1015, which is 0.252 % chord for a thickness of 12 %;
-    /// 0.24 % in a modified form. Sections of the 6-series without `A` are sharp as published.
-    Blunt,
-    /// As published, extended to the point where the sides meet (x/c = 1.00893 for 0012) and scaled back to unit chord.
-    Extended,
+words! {
+    /// Shape of the trailing edge of a NACA section.
+    pub enum TrailingEdge, TRAILING_EDGES {
+        /// last thickness coefficient -0.1036, no base of a modified form: both sides meet at x/c = 1
+        Closed = "closed",
+        /// last thickness coefficient -0.1015 as published: a base of 0.252 % chord for 12 %, of a modified form 0.24
+        /// %, of 64A010 0.04 %
+        Blunt = "blunt",
+        /// as published, extended to where the sides meet and scaled back to unit chord
+        Extended = "extended",
+    }
 }
 
 /// Decoded designation of a NACA section.

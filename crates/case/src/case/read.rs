@@ -12,10 +12,10 @@ use serde_json::{Map, Value, json};
 use toml::Spanned;
 use toml::de::{DeString, DeTable, DeValue};
 
+use super::CASE;
 use super::Case;
 use super::draft::{Draft, closest, with_point};
 use super::error::{CaseErrors, MOST_SHOWN, quote};
-use super::keys::CASE;
 use super::polar;
 use super::quantity::{Dimension, PURE};
 use super::schema::{Absent, Field, Kind, List, Range, Table, Variant, one_of};
@@ -97,7 +97,7 @@ impl Reader<'_> {
                 tree.insert(field.key.to_owned(), value);
             }
         }
-        for field in table.fields.iter().filter(|f| !seen.contains(f.key)) {
+        for field in table.fields().filter(|f| !seen.contains(f.key)) {
             match field.default_value() {
                 Some(value) => {
                     tree.insert(field.key.to_owned(), value);
@@ -380,7 +380,7 @@ impl Reader<'_> {
         if variant.is_word() {
             return Some(variant.bare());
         }
-        let keys = variant.table.map_or(&[][..], |t| t.fields).iter();
+        let keys = variant.table.into_iter().flat_map(Table::fields);
         let keys = keys.filter(|f| matches!(f.default, Absent::Required)).map(|f| format!("{} = …", f.key));
         let hint = format!("write `{path} = {{ {text} = {{ {} }} }}`", keys.collect::<Vec<_>>().join(", "));
         self.draft.fail_at(path, item.span(), format!("`{text}` needs a table of its own")).hint(hint);
@@ -458,7 +458,7 @@ impl Reader<'_> {
 
     /// Tells an unknown key; returns the one that was probably meant.
     fn unknown(&mut self, table: &'static Table, key: &str, span: Span<usize>, path: &str) -> Option<&'static str> {
-        let names = || table.fields.iter().flat_map(|f| [Some(f.key), f.alias]).flatten();
+        let names = || table.fields().flat_map(|f| [Some(f.key), f.alias]).flatten();
         // nobody reads the hints of thousands of mistakes
         let searched = self.draft.errors.len() < MOST_SHOWN;
         let meant = if searched { table.meant_by(key).or_else(|| closest(key, names())) } else { None };
@@ -468,7 +468,7 @@ impl Reader<'_> {
             None => home_of(key, &CASE, "").map(|home| format!("`{key}` belongs in `[{home}]`")),
         };
         let message = format!("unknown key `{}` {}", quote(key), inside(path));
-        let allowed = one_of(table.fields.iter().map(|f| f.key));
+        let allowed = one_of(table.fields().map(|f| f.key));
         self.draft.fail_at(&join(path, key), span, message).allowed(allowed).hint = hint;
         table.field(meant?).map(|f| f.key)
     }
@@ -549,7 +549,7 @@ fn home_of(key: &str, table: &'static Table, path: &str) -> Option<String> {
     if !path.is_empty() && table.field(key).is_some() {
         return Some(path.to_owned());
     }
-    let homes = table.fields.iter().filter_map(|field| {
+    let homes = table.fields().filter_map(|field| {
         let here = join(path, field.key);
         match &field.kind {
             Kind::Table(inner) | Kind::Tables(inner) | Kind::TableOr(inner, _) => home_of(key, inner, &here),

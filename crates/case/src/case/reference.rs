@@ -1,7 +1,7 @@
 //! What a case file may contain: as JSON schema for editors and as a page for readers.
 use serde_json::{Map, Value, json};
 
-use super::keys::CASE;
+use super::CASE;
 use super::quantity::{Dimension, plain_symbol};
 use super::schema::{Absent, Field, Kind, Range, Table, Variant};
 
@@ -16,7 +16,7 @@ pub fn schema() -> Value {
 
 fn table_schema(table: &Table) -> Map<String, Value> {
     let mut properties = Map::new();
-    for field in table.fields {
+    for field in table.fields() {
         properties.insert(field.key.to_owned(), field_schema(field, None));
         if let Some(alias) = field.alias {
             properties.insert(alias.to_owned(), field_schema(field, Some(field.key)));
@@ -26,7 +26,7 @@ fn table_schema(table: &Table) -> Map<String, Value> {
         let within = json!({ "type": "object", "properties": properties, "additionalProperties": false });
         properties.insert(name.to_owned(), within);
     }
-    let required = table.fields.iter().filter(|f| matches!(f.default, Absent::Required)).map(|f| f.key);
+    let required = table.fields().filter(|f| matches!(f.default, Absent::Required)).map(|f| f.key);
     let schema = json!({
         "type": "object",
         "properties": properties,
@@ -173,7 +173,7 @@ pub fn reference_markdown() -> String {
     );
     key_table(&CASE, &mut page);
     let mut told = Vec::new();
-    for field in CASE.fields {
+    for field in CASE.fields() {
         sections(field, field.key, &mut told, &mut page);
     }
     page.push_str("## Units\n\n| quantity | units, the base unit first |\n|---|---|\n");
@@ -246,14 +246,14 @@ fn section(
     if let Some(name) = table.within {
         page.push_str(&format!("These keys may stand in `[{path}.{name}]` as well.\n\n"));
     }
-    for field in table.fields {
+    for field in table.fields() {
         sections(field, &format!("{path}.{}", field.key), told, page);
     }
 }
 
 fn key_table(table: &Table, page: &mut String) {
     page.push_str("| key | value | default | meaning |\n|---|---|---|---|\n");
-    for field in table.fields {
+    for field in table.fields() {
         let default = field.default_words().unwrap_or_else(|| "must be given".to_owned());
         let alias = field.alias.map_or_else(String::new, |alias| format!(", `{alias}`"));
         let words = match field.kind {

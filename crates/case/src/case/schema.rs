@@ -2,14 +2,18 @@
 //!
 //! One static table (`keys.rs`) says which keys exist, what they hold, their range, default and meaning. The reader, the
 //! writer, the JSON schema for editors and the reference page all walk this table, so they cannot disagree.
+use serde::de::DeserializeOwned;
 use serde_json::{Map, Value, json};
 
 use super::quantity::Dimension;
 
 /// A table of the case file.
+#[derive(Clone, Copy)]
 pub(super) struct Table {
-    /// Keys in the order in which they are written and documented.
-    pub(super) fields: &'static [Field],
+    /// Its own keys in the order in which they are written and documented.
+    own: &'static [Field],
+    /// Keys that it shares with another table; they follow its own.
+    shared: &'static [Field],
     /// Key that a bare value stands for: `naca = "0012"` is `naca = { digits = "0012" }`.
     pub(super) shorthand: Option<&'static str>,
     /// Keys of which exactly one must be given.
@@ -19,6 +23,7 @@ pub(super) struct Table {
 }
 
 /// One key of a table.
+#[derive(Clone, Copy)]
 pub(super) struct Field {
     /// The key.
     pub(super) key: &'static str,
@@ -35,6 +40,7 @@ pub(super) struct Field {
 }
 
 /// What a key holds.
+#[derive(Clone, Copy)]
 pub(super) enum Kind {
     /// A plain number.
     Number(Range),
@@ -71,6 +77,7 @@ pub(super) enum Kind {
 }
 
 /// A list of values of one kind.
+#[derive(Clone, Copy)]
 pub(super) struct List {
     /// Kind of the items.
     pub(super) item: Kind,
@@ -83,6 +90,7 @@ pub(super) struct List {
 }
 
 /// One alternative of a [`Kind::Choice`].
+#[derive(Clone, Copy)]
 pub(super) struct Variant {
     /// The word or key.
     pub(super) name: &'static str,
@@ -95,6 +103,7 @@ pub(super) struct Variant {
 }
 
 /// What holds when a key is absent.
+#[derive(Clone, Copy)]
 pub(super) enum Absent {
     /// The key must be given.
     Required,
@@ -115,6 +124,7 @@ pub(super) enum Absent {
 }
 
 /// An interval of numbers; an infinite end is no end.
+#[derive(Clone, Copy)]
 pub(super) struct Range {
     /// Lower end.
     pub(super) min: f64,
@@ -178,15 +188,26 @@ impl Range {
 }
 
 impl Table {
-    /// A table whose keys are `fields`.
-    pub(super) const fn of(fields: &'static [Field]) -> Self {
-        Self { fields, shorthand: None, one_of: &[], within: None }
+    /// A table whose keys are `own`.
+    pub(super) const fn of(own: &'static [Field]) -> Self {
+        Self { own, shared: &[], shorthand: None, one_of: &[], within: None }
     }
 
     /// The same, which a bare value of `key` stands for.
     pub(super) const fn short(mut self, key: &'static str) -> Self {
         self.shorthand = Some(key);
         self
+    }
+
+    /// The same with the keys of `other` behind its own.
+    pub(super) const fn with_keys_of(mut self, other: &Self) -> Self {
+        self.shared = other.own;
+        self
+    }
+
+    /// All keys in the order in which they are written and documented.
+    pub(super) fn fields(&self) -> impl Iterator<Item = &'static Field> + use<> {
+        self.own.iter().chain(self.shared)
     }
 
     /// The same with exactly one of `keys`.
@@ -203,35 +224,46 @@ impl Table {
 
     /// The field called `key`, by either of its names.
     pub(super) fn field(&self, key: &str) -> Option<&'static Field> {
-        self.fields.iter().find(|f| f.key == key || f.alias == Some(key))
+        self.fields().find(|f| f.key == key || f.alias == Some(key))
     }
 
     /// The name of the field that other programs call `word`.
     pub(super) fn meant_by(&self, word: &str) -> Option<&'static str> {
         let word = word.to_lowercase().replace('-', "_");
-        self.fields.iter().find(|f| f.synonyms.contains(&word.as_str())).map(|f| f.alias.unwrap_or(f.key))
+        self.fields().find(|f| f.synonyms.contains(&word.as_str())).map(|f| f.alias.unwrap_or(f.key))
+    }
+
+    /// What an empty table is read into, where no key must be given.
+    pub(super) fn value<T: DeserializeOwned>(&self) -> T {
+        serde_json::from_value(Value::Object(self.defaults())).expect("keys without a default may be absent")
     }
 
     /// The table of an empty document: all defaults.
     pub(super) fn defaults(&self) -> Map<String, Value> {
-        self.fields.iter().filter_map(|f| Some((f.key.to_owned(), f.default_value()?))).collect()
+        self.fields().filter_map(|f| Some((f.key.to_owned(), f.default_value()?))).collect()
     }
 }
 
 impl Field {
-    /// A key that must be given.
+    /// The row of a key that must be given.
     pub(super) const fn required(key: &'static str, kind: Kind, doc: &'static str) -> Self {
-        Self { key, alias: None, synonyms: &[], doc, kind, default: Absent::Required }
+        required(kind).named(key, doc)
     }
 
-    /// A key that may be absent; `meaning` says what happens then.
+    /// The row of a key that may be absent; `meaning` says what happens then.
     pub(super) const fn optional(key: &'static str, kind: Kind, meaning: &'static str, doc: &'static str) -> Self {
-        Self { key, alias: None, synonyms: &[], doc, kind, default: Absent::Nothing(meaning) }
+        optional(kind, meaning).named(key, doc)
     }
 
-    /// A key with a default.
+    /// The row of a key with a default.
     pub(super) const fn defaulted(key: &'static str, kind: Kind, default: Absent, doc: &'static str) -> Self {
-        Self { key, alias: None, synonyms: &[], doc, kind, default }
+        defaulted(kind, default).named(key, doc)
+    }
+
+    /// The same row of a key with this name and meaning.
+    pub(super) const fn named(mut self, key: &'static str, doc: &'static str) -> Self {
+        (self.key, self.doc) = (key, doc.trim_ascii());
+        self
     }
 
     /// The same key with a second spelling.
@@ -281,6 +313,72 @@ impl Field {
     }
 }
 
+/// A key that must be given.
+pub(super) const fn required(kind: Kind) -> Field {
+    Field { key: "", alias: None, synonyms: &[], doc: "", kind, default: Absent::Required }
+}
+
+/// A key that may be absent; `meaning` says what happens then.
+pub(super) const fn optional(kind: Kind, meaning: &'static str) -> Field {
+    Field { default: Absent::Nothing(meaning), ..required(kind) }
+}
+
+/// A key with a default.
+pub(super) const fn defaulted(kind: Kind, default: Absent) -> Field {
+    Field { default, ..required(kind) }
+}
+
+/// Tables of the case file, each as the type that it is read into and the static [`Table`] of its keys.
+///
+/// An entry is `name: Type = row`, or `name as "key": Type = row` where the key is no name of Rust; its documentation is the
+/// meaning that users read. Fields behind `and` have no key.
+macro_rules! keys {
+    ($($(#[$meta:meta])* pub struct $name:ident, $table:ident $(.$with:ident($($value:expr),*))* {$(
+        $(#[doc = $doc:literal])+
+        $(#[serde($($serde:tt)*)])?
+        $field:ident $(as $key:literal)?: $type:ty = $row:expr,
+    )+} $(and {$($(#[doc = $more_doc:literal])+ $(#[serde($($more_serde:tt)*)])? $more:ident: $more_type:ty,)+})?)+) => {$(
+        $(#[$meta])*
+        #[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
+        pub struct $name {
+            $($(#[doc = $doc])+ $(#[serde($($serde)*)])? $(#[serde(rename = $key)])? pub $field: $type,)+
+            $($($(#[doc = $more_doc])+ $(#[serde($($more_serde)*)])? pub $more: $more_type,)+)?
+        }
+
+        pub(in crate::case) static $table: $crate::case::schema::Table =
+            $crate::case::schema::Table::of(&[$($row.named(keys!(@key $field $($key)?), concat!($($doc),+))),+])$(.$with($($value),*))*;
+    )+};
+    (@key $field:ident) => { stringify!($field) };
+    (@key $field:ident $key:literal) => { $key };
+}
+
+/// Words that keys of the case file hold, each as an enumeration and the list of words with their meanings.
+///
+/// An entry is `Variant = "word"`; its documentation is the meaning that users read. Variants behind `and` have no word. A variant
+/// behind the name of the list is the default.
+macro_rules! words {
+    ($($(#[$meta:meta])* pub enum $name:ident, $words:ident $(= $default:ident)? {$(
+        $(#[doc = $doc:literal])+
+        $variant:ident = $word:literal,
+    )+} $(and {$($(#[doc = $more_doc:literal])+ $more:ident,)+})?)+) => {$(
+        $(#[$meta])*
+        #[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
+        pub enum $name {
+            $($(#[doc = $doc])+ #[serde(rename = $word)] $variant,)+
+            $($($(#[doc = $more_doc])+ $more,)+)?
+        }
+
+        $(impl Default for $name {
+            fn default() -> Self {
+                Self::$default
+            }
+        })?
+
+        pub(in crate::case) const $words: &[(&str, &str)] = &[$(($word, concat!($($doc),+).trim_ascii())),+];
+    )+};
+}
+pub(super) use {keys, words};
+
 impl Variant {
     /// An alternative without keys.
     pub(super) const fn word(name: &'static str, doc: &'static str) -> Self {
@@ -308,7 +406,7 @@ impl Variant {
 
     /// The bare word is enough: every key of the table has a default.
     pub(super) fn is_word(&self) -> bool {
-        self.table.is_none_or(|t| t.fields.iter().all(|f| !matches!(f.default, Absent::Required)))
+        self.table.is_none_or(|t| t.fields().all(|f| !matches!(f.default, Absent::Required)))
     }
 }
 

@@ -1,7 +1,27 @@
 //! Time integration of a case, as data.
 use serde::{Deserialize, Serialize};
 
-use super::{Case, Frequency, Time};
+use super::Case;
+use super::kinds::{COUNT, POSITIVE};
+use super::quantity::{Frequency, Time};
+use super::schema::{Absent, Kind, Range, Variant, defaulted, keys, optional, required, words};
+
+pub(super) const TIME: &[Variant] = &[
+    Variant::table("steady", &STEADY, "relax to a steady state"),
+    Variant::table("explicit", &EXPLICIT, "march in time with an explicit Runge-Kutta method"),
+    Variant::table("dual", &DUAL, "march in time with implicit steps, each relaxed in a pseudo time"),
+    Variant::table(
+        "harmonics",
+        &HARMONICS,
+        "find the periodic solution at once by harmonic balance, without marching; `[time] harmonics = 2` is enough, and \
+         tables of a march that stand beside it are left aside",
+    )
+    .ruling(),
+    Variant::table("newmark", &NEWMARK, "march structures alone in time with implicit steps, by the generalised-alpha method"),
+    Variant::table("modes", &MODES, "find free vibrations of structures alone"),
+];
+
+const ORDERS: Kind = Kind::Number(Range { min: 0.0, max: 16.0, closed: false });
 
 /// Kind of the computation: steady relaxation, time marching, harmonic balance or vibration modes.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -21,67 +41,78 @@ pub enum Temporal {
     Modes(Modes),
 }
 
-/// Implicit time marching of a purely structural case by the generalised-α method.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Newmark {
-    /// Time step (s).
-    pub step: Time,
-    /// End time (s).
-    pub until: Time,
-    /// Spectral radius ρ∞ at infinite frequency, from 0 to 1.
-    pub rho_infinity: f64,
-    /// Residual relative to the magnitude of the forces at which a step is converged.
-    pub tolerance: f64,
-    /// Greatest number of Newton iterations per step.
-    pub iterations: u32,
-}
+keys! {
+    /// Implicit time marching of a purely structural case by the generalised-α method.
+    pub struct Newmark, NEWMARK {
+        /// Step in time.
+        step: Time = required(Kind::Quantity(Time::DIMENSION, Range::POSITIVE)),
+        /// Time at which the run ends.
+        until: Time = required(Kind::Quantity(Time::DIMENSION, Range::POSITIVE)),
+        /// What a step leaves of vibrations too fast for it: 1 is the trapezoidal rule, 0 takes them away at once.
+        rho_infinity: f64 = defaulted(Kind::Number(Range::between(0.0, 1.0)), Absent::Number(0.9)),
+        /// Residual over the size of the forces at which a step ends.
+        tolerance: f64 = defaulted(Kind::Number(Range { min: 0.0, max: 0.1, closed: false }), Absent::Number(1e-8)),
+        /// Greatest number of Newton iterations of a step.
+        iterations: u32 = defaulted(COUNT, Absent::Integer(20)),
+    }
 
-/// Natural modes of a purely structural case.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Modes {
-    /// Number of modes.
-    pub number: u32,
-    /// Lower bound of the frequencies: the modes above it and nearest to it are computed; absent: the lowest modes.
-    pub shift: Option<Frequency>,
-    /// True for modes about the static equilibrium under the loads, false for modes about the stress-free shape.
-    pub preload: bool,
-}
+    /// Natural modes of a purely structural case.
+    pub struct Modes, MODES {
+        /// Number of modes.
+        number: u32 = defaulted(Kind::Integer(1, 1000), Absent::Integer(6)),
+        /// The modes are the nearest above this frequency.
+        shift: Option<Frequency> = optional(Kind::Quantity(Frequency::DIMENSION, Range::POSITIVE), "the lowest ones"),
+        /// Vibrations are about the static equilibrium under the loads, else about the body without stress.
+        preload: bool = defaulted(Kind::Flag, Absent::Flag(false)),
+    }
 
-/// Settings of the harmonic balance.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Harmonics {
-    /// Number of harmonics.
-    pub number: HarmonicCount,
-    /// Number of harmonics with which the equations are evaluated divided by the number of harmonics of the solution.
-    pub oversample: f64,
-    /// Greatest fraction of all harmonics that the last one may have, for the automatic choice of their number.
-    pub tail: f64,
-    /// Greatest number of harmonics of the automatic choice.
-    pub most: u32,
-    /// Orders of magnitude by which the residual must fall.
-    pub orders: f64,
-    /// Alternative criterion: change of the loads below which the iteration ends.
-    pub tolerance: f64,
-    /// Greatest number of iterations for each number of harmonics.
-    pub iterations: u32,
-    /// Number of periods that are marched in time before, to provide the initial guess.
-    #[serde(default)]
-    pub march: u32,
-    /// Number of periods that are marched in time afterwards, to compare a time march with the harmonic balance.
-    #[serde(default)]
-    pub check: u32,
-    /// Iterative method.
-    pub method: SteadyMethod,
-    /// Initial Courant number.
-    pub cfl: f64,
-    /// Greatest Courant number.
-    pub cfl_max: f64,
-    /// Frequency of a purely structural case; with gas it is that of the motion.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub frequency: Option<Frequency>,
-    /// Period, an alternative to `frequency`.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub period: Option<Time>,
+    /// Settings of the harmonic balance.
+    pub struct Harmonics, HARMONICS.short("number") {
+        /// Number of harmonics N: the solution is held at 2N + 1 instances of the period. With `"auto"` there are as
+        /// many as `tail` asks for.
+        number: HarmonicCount = required(Kind::IntegerOr(1, 16, "auto")),
+        /// The equations are evaluated with so many times the harmonics and filtered: 1.5 or 2 where shocks move.
+        oversample: f64 = defaulted(Kind::Number(Range::between(1.0, 2.0)), Absent::Number(1.0)),
+        /// Part that the last harmonic may have of all harmonics, in the loads and in the density: above it a run
+        /// warns, and `number = "auto"` adds two more.
+        tail: f64 = defaulted(Kind::Number(Range { min: 0.0, max: 1.0, closed: false }), Absent::Number(0.01)),
+        /// Greatest number of harmonics of `number = "auto"`.
+        most: u32 = defaulted(Kind::Integer(1, 16), Absent::Integer(9)),
+        /// Orders of magnitude the residual must fall.
+        orders: f64 = defaulted(ORDERS, Absent::Number(5.0)),
+        /// Mean and harmonics of lift and moment must change by less than this part of the first harmonic: in the last
+        /// iteration, or over five iterations when the residual has fallen by two orders only. Structures alone: part
+        /// of the displacements that what is left may change.
+        tolerance: f64 = defaulted(Kind::Number(Range { min: 0.0, max: 0.1, closed: false }), Absent::Number(1e-4)),
+        /// Greatest number of iterations for each number of harmonics.
+        iterations: u32 = defaulted(COUNT, Absent::Integer(500)),
+        /// Periods that are marched before in coarse implicit steps, about 36 a period; the balance begins from the
+        /// last of them. For flow that separates or moves far from the steady one.
+        #[serde(default)]
+        march: u32 = defaulted(Kind::Integer(0, 1000), Absent::Integer(0)),
+        /// Periods that are marched afterwards, in implicit steps of 1/128 period from the balance; the run tells by
+        /// how much the loads of the last of them differ.
+        #[serde(default)]
+        check: u32 = defaulted(Kind::Integer(0, 1000), Absent::Integer(0)),
+        /// Method of the relaxation.
+        method: SteadyMethod = defaulted(Kind::Words(RELAXATIONS), Absent::Word("newton_krylov")),
+        /// Courant number at the start.
+        cfl: f64 = defaulted(POSITIVE, Absent::Number(10.0)),
+        /// Greatest Courant number.
+        cfl_max: f64 = defaulted(POSITIVE, Absent::Number(1e6)),
+        /// Frequency of structures alone, `omega` in the histories of their loads.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        frequency: Option<Frequency> = optional(
+            Kind::Quantity(Frequency::DIMENSION, Range::POSITIVE),
+            "that of the motion; structures alone need this or `period`",
+        ),
+        /// Period of structures alone instead.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        period: Option<Time> = optional(
+            Kind::Quantity(Time::DIMENSION, Range::POSITIVE),
+            "that of the motion; structures alone need this or `frequency`",
+        ),
+    }
 }
 
 /// Number of harmonics: given or automatic.
@@ -102,119 +133,119 @@ pub enum Automatic {
     Auto,
 }
 
-/// Settings of the steady relaxation.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Steady {
-    /// Iterative method.
-    pub method: SteadyMethod,
-    /// Orders of magnitude by which the residual must fall.
-    pub orders: f64,
-    /// Greatest number of iterations.
-    pub iterations: u32,
-    /// Initial Courant number.
-    pub cfl: f64,
-    /// Greatest Courant number.
-    pub cfl_max: f64,
-    /// Number of equal load steps of a purely structural case; absent: one.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub load_steps: Option<u32>,
+keys! {
+    /// Settings of the steady relaxation.
+    pub struct Steady, STEADY {
+        /// Method of the relaxation.
+        method: SteadyMethod = defaulted(Kind::Words(RELAXATIONS), Absent::Word("newton_krylov")),
+        /// Orders of magnitude the residual must fall.
+        orders: f64 = defaulted(ORDERS, Absent::Number(6.0)),
+        /// Greatest number of iterations.
+        iterations: u32 = defaulted(COUNT, Absent::Integer(2000)),
+        /// Courant number at the start.
+        cfl: f64 = defaulted(POSITIVE, Absent::Number(10.0)),
+        /// Greatest Courant number.
+        cfl_max: f64 = defaulted(POSITIVE, Absent::Number(1e6)),
+        /// Structures alone: the loads grow in so many equal steps.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        load_steps: Option<u32> = optional(COUNT, "1"),
+    }
 }
 
-/// Iterative method of the steady relaxation.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum SteadyMethod {
-    /// Newton's method with GMRES, preconditioned by symmetric Gauss-Seidel sweeps.
-    NewtonKrylov,
-    /// Lower-upper symmetric Gauss-Seidel sweeps (LU-SGS).
-    LuSgs,
-    /// Explicit Runge-Kutta method with local time steps, as a plain reference.
-    RungeKutta,
+words! {
+    /// Iterative method of the steady relaxation.
+    pub enum SteadyMethod, RELAXATIONS {
+        /// Newton's method with GMRES, preconditioned by sweeps
+        NewtonKrylov = "newton_krylov",
+        /// lower-upper symmetric Gauss-Seidel sweeps alone
+        LuSgs = "lu_sgs",
+        /// explicit Runge-Kutta with local steps: the plain reference
+        RungeKutta = "runge_kutta",
+    }
 }
 
-/// Settings of explicit time marching; [`read()`](super::read()) ensures that one of `until` and `periods` is given.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Explicit {
-    /// End time.
-    pub until: Option<Time>,
-    /// Number of periods of the motion, an alternative to `until`.
-    pub periods: Option<f64>,
-    /// Courant number.
-    pub cfl: f64,
-    /// Runge-Kutta method.
-    pub method: RungeKutta,
-    /// Greatest number of time steps.
-    pub steps: u32,
-    /// Change of the mean and the first harmonic of the loads from one period to the next below which the run ends.
-    pub periodic_tolerance: Option<f64>,
+keys! {
+    /// Settings of explicit time marching; [`read()`](super::read()) ensures that one of `until` and `periods` is given.
+    pub struct Explicit, EXPLICIT {
+        /// Time at which the run ends: seconds, or lengths over sound speed without a dimensional free stream.
+        until: Option<Time> = optional(Kind::Quantity(Time::DIMENSION, Range::POSITIVE), "`periods` must be given"),
+        /// Number of periods of the motion after which the run ends.
+        periods: Option<f64> = optional(POSITIVE, "`until` must be given"),
+        /// Courant number.
+        cfl: f64 = defaulted(POSITIVE, Absent::Number(0.8)),
+        /// Runge-Kutta method.
+        method: RungeKutta = defaulted(Kind::Words(MARCHES), Absent::Word("ssprk3")),
+        /// Greatest number of steps.
+        steps: u32 = defaulted(COUNT, Absent::Integer(1_000_000)),
+        /// The run ends earlier when mean and first harmonic of the loads change by less than this part of the first
+        /// harmonic from one period to the next.
+        periodic_tolerance: Option<f64> = optional(
+            Kind::Number(Range { min: 0.0, max: 1.0, closed: false }), "the run goes to its end",
+        ),
+    }
 }
 
-/// Explicit Runge-Kutta method.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum RungeKutta {
-    /// Strong-stability-preserving, three stages, third order (Shu and Osher 1988).
-    Ssprk3,
-    /// Classical, four stages, fourth order.
-    Rk4,
+words! {
+    /// Explicit Runge-Kutta method.
+    pub enum RungeKutta, MARCHES {
+        /// strong-stability-preserving, three stages, third order (Shu and Osher 1988)
+        Ssprk3 = "ssprk3",
+        /// classical, four stages, fourth order
+        Rk4 = "rk4",
+    }
 }
 
-/// Settings of implicit time marching. One of `step` and `steps_per_period` is given, and one of `until` and `periods`.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Dual {
-    /// Time step.
-    pub step: Option<Time>,
-    /// Number of time steps per period of the motion, an alternative to `step`.
-    pub steps_per_period: Option<u32>,
-    /// End time.
-    pub until: Option<Time>,
-    /// Number of periods of the motion, an alternative to `until`.
-    pub periods: Option<f64>,
-    /// Order of the backward difference, 1 or 2.
-    pub order: u8,
-    /// Orders of magnitude by which the residual must fall within a time step.
-    pub orders: f64,
-    /// Greatest number of iterations within a time step.
-    pub inner_iterations: u32,
-    /// Orders of magnitude by which the residual of the steady flow must fall before the march; absent: as many as the
-    /// march needs.
-    #[serde(default)]
-    pub start_orders: Option<f64>,
-    /// Relative error of a time step that the step size control aims at; absent: fixed steps.
-    pub adaptive: Option<f64>,
-    /// Change of the mean and the first harmonic of the loads from one period to the next below which the run ends.
-    pub periodic_tolerance: Option<f64>,
-    /// Iterative method within a time step.
-    pub method: SteadyMethod,
-    /// Initial Courant number of the pseudo time in each step.
-    pub cfl: f64,
-    /// Greatest Courant number of the pseudo time.
-    pub cfl_max: f64,
-    /// Estimated period of a free vibration of structures; the run ends with the second of two equal periods. There is
-    /// no key for it.
-    #[serde(skip)]
-    pub swing: Option<Time>,
+keys! {
+    /// Settings of implicit time marching. One of `step` and `steps_per_period` is given, and one of `until` and `periods`.
+    pub struct Dual, DUAL {
+        /// Number of steps in a period of the motion.
+        steps_per_period: Option<u32> = optional(Kind::Integer(4, 1_000_000), "`step` must be given"),
+        /// Step in time, in the units of `until`.
+        step: Option<Time> = optional(
+            Kind::Quantity(Time::DIMENSION, Range::POSITIVE), "`steps_per_period` must be given",
+        ),
+        /// Number of periods of the motion after which the run ends.
+        periods: Option<f64> = optional(POSITIVE, "`until` must be given"),
+        /// Time at which the run ends: seconds, or lengths over sound speed without a dimensional free stream.
+        until: Option<Time> = optional(Kind::Quantity(Time::DIMENSION, Range::POSITIVE), "`periods` must be given"),
+        /// Order of the backward difference in time; the first step is of first order.
+        order: u8 = defaulted(Kind::Integer(1, 2), Absent::Integer(2)),
+        /// Orders of magnitude the residual must fall within a step: below the size of the change in time, or one order
+        /// less below that of a state guessed through the last three. What is left disturbs the damping of bodies on
+        /// springs.
+        orders: f64 = defaulted(ORDERS, Absent::Number(2.0)),
+        /// Greatest number of iterations within a step.
+        inner_iterations: u32 = defaulted(COUNT, Absent::Integer(50)),
+        /// Orders of magnitude the residual of the steady flow that the march begins with must fall: what is left moves
+        /// bodies on springs.
+        #[serde(default)]
+        start_orders: Option<f64> = optional(ORDERS, "3, and 13 with bodies on springs"),
+        /// Relative error of a step to which the size of the steps is fitted.
+        adaptive: Option<f64> = optional(Kind::Number(Range { min: 0.0, max: 0.1, closed: false }), "fixed steps"),
+        /// The run ends earlier when mean and first harmonic of the loads change by less than this part of the first
+        /// harmonic from one period to the next.
+        periodic_tolerance: Option<f64> = optional(
+            Kind::Number(Range { min: 0.0, max: 1.0, closed: false }), "the run goes to its end",
+        ),
+        /// Method of the relaxation.
+        method: SteadyMethod = defaulted(Kind::Words(RELAXATIONS), Absent::Word("newton_krylov")),
+        /// Courant number at the start of the relaxation before the march; each step in time begins at ten times as
+        /// much.
+        cfl: f64 = defaulted(POSITIVE, Absent::Number(10.0)),
+        /// Greatest Courant number.
+        cfl_max: f64 = defaulted(POSITIVE, Absent::Number(1e6)),
+    } and {
+        /// Estimated period of a free vibration of structures; the run ends with the second of two equal periods. There
+        /// is no key for it.
+        #[serde(skip)]
+        swing: Option<Time>,
+    }
 }
 
 impl Dual {
     /// A march with constant time steps; all other settings have their defaults.
     pub fn fixed(step: Time, until: Time) -> Self {
-        Self {
-            step: Some(step),
-            steps_per_period: None,
-            until: Some(until),
-            periods: None,
-            order: 2,
-            orders: 2.0,
-            inner_iterations: 50,
-            start_orders: None,
-            adaptive: None,
-            periodic_tolerance: None,
-            method: SteadyMethod::NewtonKrylov,
-            cfl: 10.0,
-            cfl_max: 1e6,
-            swing: None,
-        }
+        Self { step: Some(step), until: Some(until), ..DUAL.value() }
     }
 }
 
@@ -262,13 +293,6 @@ impl Default for Temporal {
 
 impl Default for Steady {
     fn default() -> Self {
-        Self {
-            method: SteadyMethod::NewtonKrylov,
-            orders: 6.0,
-            iterations: 2000,
-            cfl: 10.0,
-            cfl_max: 1e6,
-            load_steps: None,
-        }
+        STEADY.value()
     }
 }

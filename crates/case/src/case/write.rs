@@ -4,8 +4,8 @@
 //! that loses nothing, else in radians.
 use serde_json::{Map, Value};
 
+use super::CASE;
 use super::Case;
-use super::keys::CASE;
 use super::quantity::{Angle, exact_degrees};
 use super::schema::{Field, Kind, Table};
 use super::solid_check::{OF_GAS, OUTPUT_OF_GAS};
@@ -22,10 +22,10 @@ pub fn write(case: &Case) -> String {
     super::polar::put_back(&mut tree);
     super::idle::take_out(&mut tree, case.has_gas());
     let mut text = String::new();
-    for field in CASE.fields.iter().filter(|f| !has_header(f, tree.get(f.key))) {
+    for field in CASE.fields().filter(|f| !has_header(f, tree.get(f.key))) {
         line(field, tree.get(field.key), &mut text);
     }
-    for field in CASE.fields.iter().filter(|f| has_header(f, tree.get(f.key))) {
+    for field in CASE.fields().filter(|f| has_header(f, tree.get(f.key))) {
         match (&field.kind, tree.get(field.key)) {
             (Kind::Table(table), Some(Value::Object(keys))) => {
                 section(&format!("[{}]", field.key), table, keys, &mut text)
@@ -51,7 +51,7 @@ pub fn write(case: &Case) -> String {
 
 /// A cloud as the section of a case file.
 pub fn write_cloud(cloud: &super::Cloud) -> String {
-    let field = CASE.fields.iter().find(|f| f.key == "cloud");
+    let field = CASE.fields().find(|f| f.key == "cloud");
     let (Some(Kind::Table(table)), Ok(Value::Object(mut keys))) = (field.map(|f| &f.kind), serde_json::to_value(cloud))
     else {
         return String::new();
@@ -78,7 +78,7 @@ fn section(header: &str, table: &Table, keys: &Map<String, Value>, text: &mut St
         return;
     }
     text.push_str(&format!("\n{header}\n"));
-    for field in table.fields {
+    for field in table.fields() {
         line(field, keys.get(field.key), text);
     }
 }
@@ -127,7 +127,7 @@ fn bracket(items: impl Iterator<Item = String>) -> String {
 }
 
 fn braces(table: &Table, keys: &Map<String, Value>) -> String {
-    let fields = table.fields.iter().filter_map(|f| {
+    let fields = table.fields().filter_map(|f| {
         let value = keys.get(f.key).filter(|v| !v.is_null())?;
         Some(format!("{} = {}", f.key, inline(&f.kind, value)))
     });

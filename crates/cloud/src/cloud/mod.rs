@@ -26,6 +26,7 @@ pub mod operators;
 pub mod particles;
 pub mod quality;
 pub mod repair;
+mod samples;
 pub mod sources;
 pub mod spec;
 pub mod strain;

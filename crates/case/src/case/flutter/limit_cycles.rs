@@ -1,41 +1,50 @@
 //! Limit cycles: of which coordinate, how large, with what accuracy, as data.
-use serde::{Deserialize, Serialize};
+use super::super::kinds::{PART, POSITIVE, SIZE};
+use super::super::quantity::{Angle, Length};
+use super::super::schema::{Absent, Kind, List, Range, defaulted, keys, optional, words};
 
-use super::super::{Angle, Length};
+const TURN: Kind = Kind::Quantity(Angle::DIMENSION, Range::POSITIVE);
 
-/// The table `[lco]`.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct LimitCycles {
-    /// Mach number; absent: that of `[flow]`.
-    pub mach: Option<f64>,
-    /// Coordinate whose amplitude is given; absent: `pitch`, or the first one.
-    pub coordinate: Option<String>,
-    /// Least and greatest amplitude of an angle.
-    #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    pub amplitude: Vec<Angle>,
-    /// Least and greatest amplitude of another coordinate.
-    #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    pub displacement: Vec<Length>,
-    /// Number of amplitudes.
-    pub points: u32,
-    /// Greatest number of harmonics.
-    pub harmonics: u32,
-    /// Part by which more harmonics may change a speed.
-    pub accuracy: f64,
-    /// What the gas does.
-    pub gas: GasResponse,
-    /// The largest stable motion is marched in time as well.
-    pub march: bool,
+keys! {
+    /// The table `[lco]`.
+    pub struct LimitCycles, LIMIT_CYCLES {
+        /// Mach number.
+        mach: Option<f64> = optional(POSITIVE, "that of `[flow]`"),
+        /// Coordinate whose amplitude is given: the first harmonic of it.
+        coordinate: Option<String> = optional(Kind::Text, "`pitch`, else the first one"),
+        /// Least and greatest amplitude of a coordinate that is an angle, `["0.25 deg", "4 deg"]`.
+        #[serde(default, skip_serializing_if = "Vec::is_empty")]
+        amplitude: Vec<Angle> = optional(
+            Kind::List(&List { item: TURN, min: 2, max: 2, single: false }), "`displacement` must be given",
+        ),
+        /// Least and greatest amplitude of a coordinate that is a length, or of a mode, of which one is what its file
+        /// has.
+        #[serde(default, skip_serializing_if = "Vec::is_empty")]
+        displacement: Vec<Length> = optional(
+            Kind::List(&List { item: SIZE, min: 2, max: 2, single: false }), "`amplitude` must be given",
+        ),
+        /// Number of amplitudes.
+        points: u32 = defaulted(Kind::Integer(2, 200), Absent::Integer(6)),
+        /// Greatest number of harmonics; as many are taken as `accuracy` asks for.
+        harmonics: u32 = defaulted(Kind::Integer(1, 15), Absent::Integer(5)),
+        /// Part by which two more harmonics may change a speed.
+        accuracy: f64 = defaulted(PART, Absent::Number(0.005)),
+        /// What the gas does in motions that are not small.
+        gas: GasResponse = defaulted(Kind::Words(GAS), Absent::Word("nonlinear")),
+        /// March in time from the largest stable motion that was found, until its amplitude settles, and tell by how
+        /// much it differs.
+        march: bool = defaulted(Kind::Flag, Absent::Flag(false)),
+    }
 }
 
-/// How the gas answers to a motion.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum GasResponse {
-    /// As it does, by harmonic balance.
-    Nonlinear,
-    /// As it does to small motions.
-    Linear,
+words! {
+    /// How the gas answers to a motion.
+    pub enum GasResponse, GAS {
+        /// what it does: harmonic balance at each amplitude, some of them a point
+        Nonlinear = "nonlinear",
+        /// what it does in small motions: springs alone limit the motion
+        Linear = "linear",
+    }
 }
 
 impl LimitCycles {

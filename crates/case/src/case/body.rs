@@ -1,9 +1,14 @@
-//! The keys of `[[body]]`: shapes and where they are placed.
-use super::kinds::{ANGLE, LENGTH, PLANE_POINT, POSITIVE, SIZE};
-use super::motion_keys::{BODY_MOTION, WALL};
-use super::quantity::Angle;
+//! Bodies, as data: their shapes and where they are placed.
+use serde::{Deserialize, Serialize};
+
+use super::flow::{WALL, Wall};
+use super::kinds::{ANGLE, LENGTH, PLANE_POINT, SIZE};
+use super::motion::{BODY_MOTION, BodyMotionSpec};
+use super::naca::{NACA, Naca, TrailingEdge};
+use super::quantity::{Angle, Length};
 use super::schema::{Absent, Field, Kind, List, Range, Table};
-use super::solid_keys::SOLID;
+use super::solid::{SOLID, Solid};
+use super::wing::{PROFILE_SIDES, ProfileSides, WING, Wing};
 
 /// Shape keys of a body with the dimension each of them fixes (0: by the number of lengths).
 pub(super) const SHAPES: [(&str, u64); 12] = [
@@ -133,21 +138,6 @@ pub(super) static BODY: Table = Table::of(&[
 ])
 .with_one_of(&["naca", "airfoil", "polygon", "circle", "ellipse", "sphere", "box", "surface", "wing", "revolution", "loft", "ellipsoid"]);
 
-static NACA: Table = Table::of(&[
-    Field::required("digits", Kind::Matching("^([Nn][Aa][Cc][Aa][ _-]?)?[0-9].{3,}$"), "Its designation."),
-    Field::defaulted("trailing_edge", Kind::Words(TRAILING_EDGES), Absent::Word("closed"), "How the section ends."),
-])
-.short("digits");
-
-const TRAILING_EDGES: &[(&str, &str)] = &[
-    ("closed", "last thickness coefficient -0.1036, no base of a modified form: both sides meet at x/c = 1"),
-    (
-        "blunt",
-        "last thickness coefficient -0.1015 as published: a base of 0.252 % chord for 12 %, of a modified form 0.24 %, of 64A010 0.04 %",
-    ),
-    ("extended", "as published, extended to where the sides meet and scaled back to unit chord"),
-];
-
 static CIRCLE: Table = Table::of(&[Field::required("radius", SIZE, "Radius.")]);
 
 static ELLIPSE: Table = Table::of(&[Field::required(
@@ -202,83 +192,113 @@ static LOFT: Table = Table::of(&[
 ])
 .short("stations");
 
-const PROFILE_SIDES: &[(&str, &str)] = &[
-    (
-        "smooth",
-        "a smooth curve with corners where it turns by more than 35 deg; its ends on the axis are round where it reaches them at more than 30 deg",
-    ),
-    ("straight", "straight lines: cones and cylinders"),
-];
+/// A body: exactly one shape key, followed by its placement.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Body {
+    /// Name in tables of loads; when absent, [`read()`](super::read()) assigns `body-1`, `body-2`, …
+    pub name: Option<String>,
+    /// Geometry.
+    #[serde(flatten)]
+    pub shape: Shape,
+    /// Placement: scaling, then rotation about the origin of the shape, then translation.
+    #[serde(flatten)]
+    pub placement: Placement,
+    /// Distance up to which vertices of a surface file are merged; absent: the smallest distance that closes the
+    /// surface, at most a ten thousandth of its size.
+    pub weld: Option<Length>,
+    /// Wall condition; absent: slip for an inviscid gas, adiabatic no-slip for a viscous one.
+    pub wall: Option<Wall>,
+    /// Motion of this body, which replaces that of `[motion]`; an empty table keeps the body at rest.
+    pub motion: Option<BodyMotionSpec>,
+    /// Material and discretisation of a deformable body; absent: the body is rigid, or deforms in modes.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub solid: Option<Solid>,
+}
 
-const SECTION: &str = "another key of the section";
+/// Shape of a body. In the file, each variant is a key of the body table.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Shape {
+    /// NACA section, `naca = "0012"` or `naca = "23012"`, or a table with `digits` and `trailing_edge`.
+    Naca(Naca),
+    /// Airfoil coordinate file, `airfoil = "rae2822.dat"` (Selig, Lednicer or CSV order).
+    Airfoil(String),
+    /// Closed polygon with sharp corners, `polygon = [[0, 0], [1, 0.1], [1, -0.1]]`.
+    Polygon(Vec<[f64; 2]>),
+    /// Circle (2-D), `circle = { radius = 0.5 }`.
+    Circle {
+        /// Radius.
+        radius: Length,
+    },
+    /// Ellipse centred on the origin of the shape (2-D), `ellipse = { size = [1, 0.12] }`.
+    Ellipse {
+        /// Lengths of the axes along x and y.
+        size: [Length; 2],
+    },
+    /// Sphere (3-D), `sphere = { radius = 0.5 }`.
+    Sphere {
+        /// Radius.
+        radius: Length,
+    },
+    /// Box centred on the origin of the shape, `box = { size = [1, 1, 1] }` (two or three numbers).
+    Box {
+        /// Edge lengths.
+        size: Vec<Length>,
+    },
+    /// STL, OBJ or PLY file, `surface = "wing.stl"`.
+    Surface(String),
+    /// Wing, tail or fin, given by its planform and sections.
+    Wing(Box<Wing>),
+    /// Body of revolution about the x axis.
+    Revolution {
+        /// Points (x, r) from the nose to the rear.
+        profile: Vec<[f64; 2]>,
+        /// Curve through the points.
+        sides: ProfileSides,
+    },
+    /// Body along the x axis with oval or rounded rectangular cross-sections.
+    Loft {
+        /// Cross-sections (x, width, height and optionally z of the centre) from the nose to the rear.
+        stations: Vec<Vec<f64>>,
+        /// Exponent n of the cross-sections |2y/width|ⁿ + |2z/height|ⁿ = 1.
+        exponent: f64,
+        /// Curve through the cross-sections.
+        sides: ProfileSides,
+    },
+    /// Ellipsoid centred on the origin of the shape.
+    Ellipsoid {
+        /// Lengths of the three axes.
+        size: [Length; 3],
+    },
+}
 
-static WING: Table = Table::of(&[
-    Field::optional(
-        "naca",
-        Kind::Table(&NACA),
-        SECTION,
-        "NACA section, at the root where there is another one at the tip.",
-    ),
-    Field::optional("airfoil", Kind::File, SECTION, "Coordinate file of the section."),
-    Field::optional("tip_naca", Kind::Table(&NACA), "that of the root", "NACA section at the tip."),
-    Field::optional("tip_airfoil", Kind::File, "that of the root", "Coordinate file of the section at the tip."),
-    Field::required("span", SIZE, "Distance from tip to tip; from root to tip where there is one side."),
-    Field::optional("chord", SIZE, "from `aspect_ratio`", "Chord at the root.").alias("root_chord"),
-    Field::optional("aspect_ratio", POSITIVE, "from `chord`", "Square of the span over the area."),
-    Field::defaulted(
-        "taper",
-        Kind::Number(Range::POSITIVE),
-        Absent::Number(1.0),
-        "Chord at the tip over that at the root.",
-    ),
-    Field::defaulted(
-        "sweep",
-        Kind::Quantity(Angle::DIMENSION, Range::between(-STEEPEST_SWEEP, STEEPEST_SWEEP)),
-        Absent::Number(0.0),
-        "Angle by which the line at `sweep_at` of the chord is swept back.",
-    ),
-    Field::defaulted(
-        "sweep_at",
-        Kind::Number(Range::between(0.0, 1.0)),
-        Absent::Number(0.0),
-        "Part of the chord at which that line runs: 0 is the leading edge.",
-    ),
-    Field::defaulted(
-        "dihedral",
-        Kind::Quantity(Angle::DIMENSION, Range::between(-UPRIGHT, UPRIGHT)),
-        Absent::Number(0.0),
-        "Angle by which tips are raised; `\"90 deg\"` for a fin, which has one side.",
-    ),
-    Field::defaulted(
-        "twist",
-        Kind::Quantity(Angle::DIMENSION, Range::between(-UPRIGHT, UPRIGHT)),
-        Absent::Number(0.0),
-        "Angle by which the nose of the tip is turned up against the root, about the quarter chord; in between it grows in proportion \
-         to the distance from the root.",
-    ),
-    Field::defaulted(
-        "planform",
-        Kind::Words(PLANFORMS),
-        Absent::Word("straight"),
-        "How the chord changes along the span.",
-    ),
-    Field::defaulted("tip", Kind::Words(TIPS), Absent::Word("round"), "How tips end."),
-    Field::defaulted("sides", Kind::Words(WING_SIDES), Absent::Word("both"), "Which sides there are."),
-]);
+/// Placement of a body.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Placement {
+    /// Length of one unit of the shape: a factor on its coordinates. For an airfoil of unit chord this is the chord.
+    pub scale: f64,
+    /// Rotation: one angle in 2-D (nose up positive, about the origin of the shape), three in 3-D (about x, y, z);
+    /// empty: no rotation.
+    pub rotate: Vec<Angle>,
+    /// Translation after scaling and rotation; empty: no translation.
+    pub translate: Vec<Length>,
+}
 
-/// Steepest sweep of a wing, radians (80°), and the dihedral of a fin.
-const STEEPEST_SWEEP: f64 = 80.0 * std::f64::consts::PI / 180.0;
-const UPRIGHT: f64 = 0.5 * std::f64::consts::PI;
+impl Default for Placement {
+    /// No scaling, rotation or translation.
+    fn default() -> Self {
+        Self { scale: 1.0, rotate: Vec::new(), translate: Vec::new() }
+    }
+}
 
-const PLANFORMS: &[(&str, &str)] = &[
-    ("straight", "in proportion to the distance from the root"),
-    ("elliptic", "as that of an ellipse, without `taper`"),
-];
+impl Body {
+    /// A body of this shape without name and motion, placed as the shape defines it.
+    pub fn new(shape: Shape) -> Self {
+        Self { name: None, shape, placement: Placement::default(), weld: None, wall: None, motion: None, solid: None }
+    }
 
-const TIPS: &[(&str, &str)] = &[
-    ("round", "half a circle seen from ahead, inside the planform; an elliptic planform ends in a point"),
-    ("flat", "the face of the last section"),
-    ("revolved", "half a body of revolution of the last section, beyond the span, as of the ONERA M6"),
-];
-
-const WING_SIDES: &[(&str, &str)] = &[("both", "both, mirrored at y = 0"), ("one", "that of positive y, or the fin")];
+    /// A NACA 4-digit section of unit chord with a closed trailing edge, nose at the origin.
+    pub fn naca(digits: &str) -> Self {
+        Self::new(Shape::Naca(Naca { digits: digits.to_owned(), trailing_edge: TrailingEdge::Closed }))
+    }
+}

@@ -310,7 +310,7 @@ mod tests {
             assert!(read("README.md").contains("**Authority"), "{folder:?}");
             for claim in &file.claims {
                 if let Some(curve) = &claim.file {
-                    let table = crate::verify::Table::parse(&read(curve)).unwrap();
+                    let table = crate::claims::Table::parse(&read(curve)).unwrap();
                     let columns: &[&str] = match claim.metric {
                         Metric::Comparison(ComparisonMetric::LiftLoopDifference) => &["phase", "CL"],
                         Metric::Comparison(ComparisonMetric::DragLoopDifference) => &["phase", "CD"],
