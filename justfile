@@ -20,6 +20,10 @@ lint:
     cargo fmt --all --check
     cargo clippy --workspace --all-targets -- -D warnings
 
+# lines of Rust outside tests, room by room
+lines-of-code:
+    tools/lines.py
+
 # the tests of the README
 test:
     cargo test --release --workspace

@@ -108,12 +108,6 @@ impl FlutterSection {
         }
     }
 
-    /// Mode shape z/α of the root `lambda`: plunge (positive up, divided by b) per radian of pitch.
-    pub fn plunge_over_pitch(&self, v: f64, lambda: Complex64) -> Result<Complex64, Error> {
-        let m = self.matrix(lambda, v)?;
-        Ok(-m[0][1] / m[0][0])
-    }
-
     /// Frequencies divided by ω_α in still fluid with its added mass; the first is that of the mode with more plunge if
     /// it is the lower one.
     fn still(&self) -> [f64; 2] {
@@ -245,8 +239,8 @@ mod tests {
         for root in before {
             assert!(s.determinant(root, 0.9 * v).unwrap().norm() < 1e-12);
             // the second equation holds for the mode shape from the first
-            let (z, m) = (s.plunge_over_pitch(0.9 * v, root).unwrap(), s.matrix(root, 0.9 * v).unwrap());
-            assert!((m[1][0] * z + m[1][1]).norm() < 1e-11);
+            let m = s.matrix(root, 0.9 * v).unwrap();
+            assert!((m[1][1] - m[1][0] * m[0][1] / m[0][0]).norm() < 1e-11);
         }
         assert_eq!(s.flutter(10.0).unwrap(), None);
         // damping increases the speed here; for Isogai's section with its large static unbalance it decreases it

@@ -159,11 +159,6 @@ impl LiftingSurface {
     pub fn with_section(&self, ratio: f64) -> f64 {
         1.0 / (1.0 / self.lift_slope - (1.0 - 1.0 / ratio) * self.beta / (2.0 * PI))
     }
-
-    /// Induced drag coefficient at the lift coefficient `lift`.
-    pub fn induced_drag(&self, lift: f64) -> f64 {
-        lift * lift / (PI * self.aspect_ratio * self.efficiency)
-    }
 }
 
 /// Circulations for which the downwash at all control points is 1; `None` if the system is singular.

@@ -87,11 +87,6 @@ impl Tube {
         GasState { density, velocity: Vector([speed]), pressure }
     }
 
-    /// Acoustic pressure ρ₀c₀u above p₀ for a piston of small velocity `speed`.
-    pub fn acoustic_pressure(&self, speed: f64) -> f64 {
-        self.density * self.sound_speed() * speed
-    }
-
     /// Distance from the mean position of the piston at which the wave breaks. Neighbouring characteristics meet after
     /// the time (c₀ + (γ − 1)u/2) / ((γ + 1)u̇/2); the shortest distance counts.
     pub fn breaks_at(&self, piston: &Oscillation) -> f64 {
@@ -193,7 +188,8 @@ mod tests {
             let got = amplitudes(|t| tube.on_piston(mach * t.sin()).pressure, 1.0);
             (0..4).for_each(|m| near(got[m], expected[m], 1e-9));
         }
-        near(tube.acoustic_pressure(1e-6), tube.on_piston(1e-6).pressure - 1.0, 1e-5);
+        // acoustic pressure ρ₀c₀u
+        near(tube.density * tube.sound_speed() * 1e-6, tube.on_piston(1e-6).pressure - 1.0, 1e-5);
     }
 
     #[test] // reference/harmonics/piston_tube_simplewave_harmonics.csv: ω = 2π, places in wave lengths

@@ -119,12 +119,6 @@ impl Ringleb {
         Ok(Vector([angle.sin(), -angle.cos()]))
     }
 
-    /// Stream function 1/k at `x`, which is constant on the walls of a channel; an error beyond the limit line.
-    pub fn stream_function(&self, x: &Vector<2>) -> Result<f64, Error> {
-        let point = self.hodograph(x)?;
-        Ok(point.angle.sin() / point.speed)
-    }
-
     /// Density at the speed `q`, divided by the stagnation density.
     pub fn density(&self, q: f64) -> f64 {
         self.sound_speed(q).powi(self.exponent)
@@ -248,7 +242,7 @@ mod tests {
             let w = flow().state(&middle).unwrap();
             assert!(step.dot(&w.velocity.unit()) > 0.999);
             assert!(flow().normal(&middle).unwrap().dot(&step).abs() < 0.02);
-            assert!((flow().stream_function(&pair[0]).unwrap() * 0.9 - 1.0).abs() < 1e-9);
+            assert!((flow().hodograph(&pair[0]).unwrap().streamline / 0.9 - 1.0).abs() < 1e-9);
         }
         let x = line[10];
         let towards = x + flow().normal(&x).unwrap() * 1e-3;

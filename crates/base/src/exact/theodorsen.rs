@@ -57,11 +57,6 @@ pub fn theodorsen_growing(p: Complex64) -> Result<Complex64, Error> {
     Ok(first / (zeroth + first))
 }
 
-/// Load coefficients of a plate as by [`plate`], for a motion e^{pUt/b}.
-pub fn plate_growing(p: Complex64, a: f64, pitch: Complex64, plunge: Complex64) -> Result<PlateLoads, Error> {
-    Ok(plate_loads(p, theodorsen_growing(p)?, a, [pitch, plunge]))
-}
-
 /// Load coefficients for the exponent p and the value `c` of C(p), exact or approximate; the evaluation of C(p) is by
 /// far the largest cost.
 pub fn plate_loads(p: Complex64, c: Complex64, a: f64, [pitch, plunge]: [Complex64; 2]) -> PlateLoads {
@@ -122,7 +117,12 @@ mod tests {
         assert_eq!(theodorsen_growing(ZERO).unwrap(), ONE);
         assert!(theodorsen_growing(-ONE).is_err() && theodorsen_growing(ONE * f64::NAN).is_err());
         let (p, a) = (Complex64::new(0.0, 0.3), -0.2);
-        assert!((plate_growing(p, a, ONE, ZERO).unwrap().lift - plate(0.3, a, ONE, ZERO).unwrap().lift).norm() < 1e-13);
+        assert!(
+            (plate_loads(p, theodorsen_growing(p).unwrap(), a, [ONE, ZERO]).lift
+                - plate(0.3, a, ONE, ZERO).unwrap().lift)
+                .norm()
+                < 1e-13
+        );
     }
 
     #[test]

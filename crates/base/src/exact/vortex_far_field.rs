@@ -30,11 +30,6 @@ pub struct FarFieldVortex {
     direction: Vector<2>,
 }
 
-/// Circulation Γ = ½ CL c U for the lift coefficient `lift`, the chord `chord` and the free-stream speed `speed`.
-pub fn circulation_of_lift(lift: f64, chord: f64, speed: f64) -> f64 {
-    0.5 * lift * chord * speed
-}
-
 impl FarFieldVortex {
     /// Field of a vortex with the strength `circulation` (positive for lift) at `centre`. Returns an error if the free
     /// stream is not physical, at rest or not subsonic.
@@ -155,6 +150,5 @@ mod tests {
         let free = |u| GasState { density: 1.0, velocity: Vector([u, 0.0]), pressure: 1.0 / 1.4 };
         assert!(FarFieldVortex::new(free(1.2), 1.4, 0.1, Vector::ZERO).is_err());
         assert!(FarFieldVortex::new(free(0.0), 1.4, 0.1, Vector::ZERO).is_err());
-        assert_eq!(circulation_of_lift(0.28, 1.0, 0.5), 0.07);
     }
 }

@@ -101,16 +101,6 @@ pub enum AnyMode<'a> {
     Flexible(&'a FlexibleMode),
 }
 
-impl Mode {
-    /// Name of the mode in the case file.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Plunge => "plunge",
-            Self::Pitch => "pitch",
-        }
-    }
-}
-
 impl AnyMode<'_> {
     /// Name of the mode.
     pub fn name(&self) -> &str {

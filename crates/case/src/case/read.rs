@@ -1,6 +1,6 @@
 //! Reading a case file: all mistakes in one go.
 //!
-//! The text becomes a spanned document, the document is walked along the table of keys (`keys.rs`), and every value that
+//! The text becomes a spanned document, the document is walked along the tables of keys ([`CASE`]), and every value that
 //! passes lands in base units in a plain tree with all defaults. Contradictions between keys are looked for in that tree
 //! (`check.rs`); a tree without mistakes is what [`Case`] is deserialised from.
 use std::collections::BTreeSet;

@@ -1,6 +1,6 @@
 //! The language in which the case format is described.
 //!
-//! One static table (`keys.rs`) says which keys exist, what they hold, their range, default and meaning. The reader, the
+//! A table of the file is declared once ([`keys`], [`words`]): its type, and which keys exist, what they hold, their range, default and meaning. The reader, the
 //! writer, the JSON schema for editors and the reference page all walk this table, so they cannot disagree.
 use serde::de::DeserializeOwned;
 use serde_json::{Map, Value, json};
@@ -366,6 +366,19 @@ macro_rules! words {
         pub enum $name {
             $($(#[doc = $doc])+ #[serde(rename = $word)] $variant,)+
             $($($(#[doc = $more_doc])+ $more,)+)?
+        }
+
+        impl $name {
+            /// All that have a word in the case file.
+            pub const ALL: [Self; [$($word),+].len()] = [$(Self::$variant),+];
+
+            /// The word in the case file; empty where there is none.
+            pub const fn name(self) -> &'static str {
+                match self {
+                    $(Self::$variant => $word,)+
+                    $($(Self::$more => "",)+)?
+                }
+            }
         }
 
         $(impl Default for $name {

@@ -329,19 +329,12 @@ keys! {
 }
 
 impl Freedom {
-    /// All coordinates.
-    pub const ALL: [Self; 7] = [Self::Surge, Self::Sway, Self::Plunge, Self::Roll, Self::Pitch, Self::Yaw, Self::Flap];
-
-    /// Name of the coordinate in the case file.
-    pub fn name(self) -> &'static str {
+    /// True when the coordinate exists in cases of this dimension.
+    pub fn exists_in(self, dimension: usize) -> bool {
         match self {
-            Self::Surge => "surge",
-            Self::Sway => "sway",
-            Self::Plunge => "plunge",
-            Self::Roll => "roll",
-            Self::Pitch => "pitch",
-            Self::Yaw => "yaw",
-            Self::Flap => "flap",
+            Self::Surge | Self::Plunge | Self::Pitch => true,
+            Self::Flap => dimension == 2,
+            Self::Sway | Self::Roll | Self::Yaw => dimension == 3,
         }
     }
 
@@ -393,17 +386,6 @@ impl Structure {
             (true, _) => *f != Freedom::Flap,
         };
         all.into_iter().filter(free).collect()
-    }
-}
-
-impl Freedom {
-    /// True when the coordinate exists in cases of this dimension.
-    pub fn exists_in(self, dimension: usize) -> bool {
-        match self {
-            Self::Surge | Self::Plunge | Self::Pitch => true,
-            Self::Flap => dimension == 2,
-            Self::Sway | Self::Roll | Self::Yaw => dimension == 3,
-        }
     }
 }
 

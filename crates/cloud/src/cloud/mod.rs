@@ -237,11 +237,6 @@ impl<const D: usize> Cloud<D> {
         start..start + self.outer.len()
     }
 
-    /// Indices of the ghosts.
-    pub fn ghost_range(&self) -> Range<usize> {
-        self.n_real()..self.len()
-    }
-
     /// Number of particles that have a neighbour list: fluid and interface particles.
     pub fn n_rows(&self) -> usize {
         self.n_fluid + self.interface.len()

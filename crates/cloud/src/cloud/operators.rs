@@ -10,7 +10,6 @@
 //! number of threads.
 use std::ops::Range;
 
-use super::neighbours::Neighbours;
 use super::{Cloud, Ghost, Transform};
 use crate::math::Vector;
 use crate::math::least_squares::{bounded_inverse, gradient_weight, normal_inverse, normal_matrix};
@@ -467,14 +466,4 @@ fn weights<const D: usize>(
         None => a_i * (2.0 * cloud.volume[i]),
     };
     ([a_i, back.unwrap_or(Vector::ZERO)], s)
-}
-
-/// True when neighbourhood is mutual: each neighbour with a row of its own has the particle as a neighbour too.
-pub fn is_symmetric(neighbours: &Neighbours, n_rows: usize) -> bool {
-    (0..n_rows).all(|i| {
-        neighbours
-            .of(i)
-            .iter()
-            .all(|j| *j as usize >= n_rows || neighbours.of(*j as usize).binary_search(&(i as u32)).is_ok())
-    })
 }

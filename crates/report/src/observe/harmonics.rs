@@ -148,12 +148,6 @@ impl Harmonics {
         (1..=self.terms.len()).filter(|n| self.term(*n).norm() > least).collect()
     }
 
-    /// f_n when time starts at the greatest value of the first harmonic of `motion`.
-    pub fn from_motion_phase(&self, motion: &Self, n: usize) -> Complex64 {
-        let turn = motion.term(1).arg();
-        self.term(n) * Complex64::cis(-(n as f64) * turn)
-    }
-
     /// Work of a cycle ∮ f dα on the motion α.
     pub fn work(&self, motion: &Self) -> f64 {
         let shared = self.terms.len().min(motion.terms.len());
@@ -190,12 +184,6 @@ impl Periodicity {
     pub fn change(&self) -> f64 {
         self.mean.max(self.first)
     }
-}
-
-/// Area of a closed loop of pairs (motion, load): ∮ load d motion.
-pub fn loop_area(points: &[[f64; 2]]) -> f64 {
-    let n = points.len();
-    (0..n).map(|k| (points[k], points[(k + 1) % n])).map(|(a, b)| 0.5 * (a[1] + b[1]) * (b[0] - a[0])).sum()
 }
 
 /// Range of samples inside the window that ends at `end`.
@@ -314,17 +302,15 @@ mod tests {
         let load = fit(|t| 3.0 * (omega() * t + 1.1 - 0.25).sin() + 0.2 * (2.0 * (omega() * t + 1.1)).cos(), 2);
         let ratio = load.per(&motion, 1);
         assert!((ratio.norm() - 30.0).abs() < 1e-10 && (ratio.arg() + 0.25).abs() < 1e-12);
-        // the origin of time does not matter
-        let late = fit(|t| 0.2 * (2.0 * omega() * t).cos(), 2);
-        let sine = fit(|t| (omega() * t).sin(), 2);
-        assert!((late.from_motion_phase(&sine, 2) - load.from_motion_phase(&motion, 2)).norm() < 1e-12);
     }
 
     #[test]
     fn work_is_the_area_of_the_loop() {
         let motion = fit(|t| 0.1 * (omega() * t).sin() + 0.01 * (2.0 * omega() * t).cos(), 2);
         let load = fit(|t| 1.0 + 3.0 * (omega() * t + 0.4).sin() + 0.2 * (2.0 * omega() * t).sin(), 2);
-        let area = loop_area(&load.cycle(&motion, 4096));
+        let (cycle, n) = (load.cycle(&motion, 4096), 4096);
+        let pairs = (0..n).map(|k| (cycle[k], cycle[(k + 1) % n]));
+        let area: f64 = pairs.map(|(a, b)| 0.5 * (a[1] + b[1]) * (b[0] - a[0])).sum();
         assert!((load.work(&motion) - area).abs() < 1e-5 * area.abs(), "{} {area}", load.work(&motion));
         let plain = fit(|t| 3.0 * (omega() * t + 0.4).sin(), 1);
         let pitch = fit(|t| 0.1 * (omega() * t).sin(), 1);

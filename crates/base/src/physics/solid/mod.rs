@@ -233,11 +233,6 @@ impl Material {
         if matches!(self.law, Law::Plastic(_)) { history[plasticity::TEMPERATURE] } else { self.thermal.start }
     }
 
-    /// Plastic work per undeformed volume in the history variables; 0 for laws without plasticity.
-    pub fn plastic_work(&self, history: &[f64]) -> f64 {
-        if matches!(self.law, Law::Plastic(_)) { history[plasticity::WORK] } else { 0.0 }
-    }
-
     /// Temperature rise per plastic work, χ/(ρc).
     fn heating(&self) -> f64 {
         self.thermal.heated_fraction / (self.density * self.thermal.heat_capacity)
