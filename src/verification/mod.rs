@@ -11,6 +11,7 @@ use std::path::{Path, PathBuf};
 
 use crate::case::Case;
 use crate::observe::loads::Coefficients;
+use crate::problem::files::plain;
 use crate::study::Monitor;
 use crate::verify::calibration::{KnownLoad, holding, median_ratio};
 use crate::verify::metric::{BarMetric, FlutterMetric, ForceMetric, StudyMetric};
@@ -255,7 +256,7 @@ impl Walk {
     fn calibrate(&mut self, (metric, claim): (BarMetric, &Claim), folder: &Folder, monitor: &mut dyn Monitor) -> Value {
         let name = claim.file.as_deref().ok_or("the claim names no `file` of loads")?;
         let wrong = |e: &dyn std::fmt::Display| format!("`{name}`: {e}");
-        let text = fs::read_to_string(folder.path.join(name)).map_err(|e| wrong(&e))?;
+        let text = plain(&folder.path.join(name)).map_err(|e| wrong(&e))?;
         let known = Table::parse(&text).and_then(|t| KnownLoad::all(&t)).map_err(|e| wrong(&e))?;
         let mut loads = Vec::new();
         for row in &known {
