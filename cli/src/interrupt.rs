@@ -3,6 +3,8 @@
 //! SIGINT and SIGTERM ask the run to finish its iteration, write a checkpoint and stop; a second one ends the process at
 //! once. SIGHUP asks for the same, any number of times (a terminal that closes may send two), unless it was ignored when
 //! the program began, as under `nohup`. SIGUSR1 asks for a checkpoint now. Handlers only set flags: the run loop looks at them between iterations.
+//! While there are none, as while a cloud is built, nothing would be written down that is not on the disk already: a thread that waits for the same
+//! signals ends the process then.
 use std::io;
 use std::path::Path;
 use std::sync::Arc;
@@ -10,6 +12,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 use signal_hook::consts::{SIGINT, SIGTERM};
 use signal_hook::flag;
+use signal_hook::iterator::Signals;
 
 use crate::outcome::Outcome;
 
@@ -20,6 +23,8 @@ pub(crate) struct Interrupt {
     pub(crate) stop: Arc<AtomicBool>,
     /// Write a checkpoint and go on.
     pub(crate) checkpoint: Arc<AtomicBool>,
+    /// Nobody asks whether to stop: what goes on has no iterations.
+    pub(crate) idle: Arc<AtomicBool>,
 }
 
 impl Interrupt {
@@ -42,6 +47,21 @@ impl Interrupt {
         Ok(flags)
     }
 
+    /// From now on a signal to stop ends the process at once where there are no iterations, after `farewell`.
+    pub(crate) fn ends_between_iterations(&self, farewell: impl Fn() + Send + 'static) -> io::Result<()> {
+        let idle = Arc::clone(&self.idle);
+        let mut signals = Signals::new(to_stop())?;
+        std::thread::spawn(move || {
+            for _ in signals.forever() {
+                if idle.load(Ordering::Relaxed) {
+                    farewell();
+                    std::process::exit(Outcome::Interrupted as i32);
+                }
+            }
+        });
+        Ok(())
+    }
+
     /// True when the run shall stop after this iteration.
     pub(crate) fn stopping(&self) -> bool {
         self.stop.load(Ordering::Relaxed)
@@ -56,6 +76,15 @@ impl Interrupt {
     pub(crate) fn farewell(run: &Path, iteration: u64) -> String {
         format!("interrupted after iteration {iteration}; go on with `alula resume {}`", run.display())
     }
+}
+
+/// Signals that ask a run to stop.
+fn to_stop() -> Vec<i32> {
+    #[cfg(unix)]
+    let hangup = Some(signal_hook::consts::SIGHUP).filter(|hangup| is_heard(*hangup));
+    #[cfg(not(unix))]
+    let hangup = None;
+    [SIGINT, SIGTERM].into_iter().chain(hangup).collect()
 }
 
 /// True when the system says that the process was not told to ignore `signal`: a handler would end what `nohup` protects.

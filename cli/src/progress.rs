@@ -167,10 +167,20 @@ impl Progress {
 
     fn sentence(&mut self, event: &str, text: &str, for_people: &str) {
         match &self.voice {
-            Voice::Bar(bar) => bar.suspend(|| message(for_people)),
+            Voice::Bar(bar) => bar.suspend(|| message(&wrapped(for_people, width_of_terminal()))),
             Voice::Lines(_) => self.say(for_people),
             Voice::Json(_) => self.event(event, json!({ "message": text })),
             Voice::Silent => {}
+        }
+    }
+
+    /// What leaves the line from another thread.
+    pub(crate) fn leaving(&self) -> impl Fn() + Send + 'static + use<> {
+        let bar = if let Voice::Bar(bar) = &self.voice { Some(bar.clone()) } else { None };
+        move || {
+            if let Some(bar) = &bar {
+                bar.abandon();
+            }
         }
     }
 
@@ -219,10 +229,34 @@ fn fitted(texts: &[(u8, String)], columns: usize) -> String {
     }
 }
 
+/// Columns of the terminal.
+fn width_of_terminal() -> usize {
+    console::Term::stderr().size_checked().map_or(COLUMNS, |(_, columns)| usize::from(columns))
+}
+
 /// Columns of the terminal that are left for a line.
 fn columns_of_terminal() -> usize {
-    let known = console::Term::stderr().size_checked().map_or(COLUMNS, |(_, columns)| usize::from(columns));
-    known.min(COLUMNS).saturating_sub(BEFORE)
+    width_of_terminal().min(COLUMNS).saturating_sub(BEFORE)
+}
+
+/// The text in lines of so many columns, where words allow it; lines that go on are indented.
+fn wrapped(text: &str, columns: usize) -> String {
+    const INDENT: &str = "  ";
+    let mut lines: Vec<String> = Vec::new();
+    for line in text.lines() {
+        let mut now = String::new();
+        for word in line.split(' ') {
+            let length = now.chars().count();
+            if length > INDENT.len() && length + 1 + word.chars().count() > columns {
+                lines.push(std::mem::replace(&mut now, INDENT.to_owned() + word));
+            } else {
+                now += if length == 0 { "" } else { " " };
+                now += word;
+            }
+        }
+        lines.push(now);
+    }
+    lines.join("\n")
 }
 
 /// What is left of the whole run.
@@ -419,6 +453,17 @@ mod tests {
             march: None,
             point: None,
         }
+    }
+
+    #[test]
+    fn sentences_are_wrapped_at_words() {
+        let point =
+            "point 1 of 7: M 0.4, alpha -3 deg: CL -0.41143 ± 0.00165, CD 0.00006 ± 0.00018, CM 0.00585 ± 0.00012";
+        assert_eq!(wrapped(point, 200), point);
+        let lines = wrapped(point, 80);
+        assert!(lines.lines().count() == 2 && lines.lines().all(|l| l.chars().count() <= 80), "{lines}");
+        assert_eq!(lines.replace("\n  ", " "), point);
+        assert_eq!(wrapped("a longword b\nnext", 6), "a\n  longword\n  b\nnext");
     }
 
     #[test]

@@ -1,4 +1,5 @@
 //! Between a run and its user: progress out, signals in.
+use std::sync::atomic::Ordering;
 use std::time::Instant;
 
 use alula::run::{Monitor, Portion, Tick, TimeLeft};
@@ -30,6 +31,21 @@ impl Watch {
         }
     }
 
+    /// The same, which ends the process at once where it is told to stop while nothing is iterated, after `farewell`.
+    pub(crate) fn with_farewell(mut self, farewell: impl Fn() + Send + 'static) -> Self {
+        let leave = self.progress.leaving();
+        let told = self.interrupt.ends_between_iterations(move || {
+            leave();
+            farewell();
+        });
+        // what is read before a run begins is not written down
+        self.interrupt.idle.store(true, Ordering::Relaxed);
+        if let Err(problem) = told {
+            self.note(&format!("signals are heard between iterations only: {problem}"));
+        }
+        self
+    }
+
     /// Time left in this portion of the run.
     fn left(&mut self, now: &Portion) -> Option<Left> {
         let seconds = self.time_left.seconds(now)?;
@@ -44,6 +60,7 @@ impl Watch {
 
 impl Monitor for Watch {
     fn tick(&mut self, tick: &Tick) {
+        self.interrupt.idle.store(false, Ordering::Relaxed);
         let first = *self.first.get_or_insert(tick.iteration.saturating_sub(1));
         let seconds = self.began.elapsed().as_secs_f64();
         let left = self.left(&tick.portion);
@@ -62,6 +79,7 @@ impl Monitor for Watch {
     }
 
     fn doing(&mut self, what: &str, now: &Portion) {
+        self.interrupt.idle.store(true, Ordering::Relaxed);
         let left = self.left(now);
         self.progress.doing(what, left);
     }
@@ -79,6 +97,8 @@ impl Monitor for Watch {
     }
 
     fn stop(&self) -> bool {
+        // whoever asks stops by itself
+        self.interrupt.idle.store(false, Ordering::Relaxed);
         self.interrupt.stopping()
     }
 

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::{PyBool, PyDict, PyFloat, PyMapping, PyString};
-use solver::case::{Case, open_regular, read_in, read_regular, text_of};
+use solver::case::{Case, open_regular, read_in, read_written, text_of};
 use toml::{Table, Value};
 
 use crate::faults;
@@ -82,7 +82,7 @@ fn unreadable(path: &Path, problem: &std::io::Error) -> PyErr {
 }
 
 fn text_at(py: Python<'_>, path: &Path) -> PyResult<String> {
-    let bytes = read_regular(path).map_err(|problem| unreadable(path, &problem))?;
+    let bytes = read_written(path).map_err(|problem| unreadable(path, &problem))?;
     text_of(&bytes).map_err(|problem| {
         let hint = "a case file is TOML, saved as UTF-8";
         faults::single(py, &format!("cannot read `{}`: {problem}\nhint: {hint}", path.display()))

@@ -3,7 +3,7 @@ use pyo3::create_exception;
 use pyo3::exceptions::{PyOSError, PyRuntimeError, PyValueError};
 use pyo3::prelude::*;
 use serde_json::{Value, json};
-use solver::case::CaseErrors;
+use solver::case::{CaseErrors, abridged};
 use solver::run::{Blame, RunError};
 
 use crate::tables::python_of;
@@ -39,7 +39,7 @@ fn mistakes(errors: &CaseErrors, in_file: bool) -> Vec<Value> {
 pub(crate) fn of_run(py: Python<'_>, error: &RunError) -> PyErr {
     let text = match error {
         RunError::Folder { what, hint } => format!("{what}\nhint: {}", in_python(hint)),
-        other => other.to_string(),
+        other => abridged(&other.to_string()),
     };
     match error.blame() {
         Blame::Files => PyOSError::new_err(text),
@@ -55,11 +55,11 @@ pub(crate) fn of_run(py: Python<'_>, error: &RunError) -> PyErr {
 pub(crate) fn of_all(py: Python<'_>, errors: &[RunError]) -> PyErr {
     let of = |error: &RunError| match error {
         RunError::Case(errors) => mistakes(errors, true),
-        other => vec![mistake(&other.to_string())],
+        other => vec![mistake(&abridged(&other.to_string()))],
     };
     let text = |error: &RunError| match error {
         RunError::Case(errors) => errors.render(false),
-        other => other.to_string(),
+        other => abridged(&other.to_string()),
     };
     raised(py, errors.iter().map(text).collect::<Vec<_>>().join("\n"), errors.iter().flat_map(of).collect())
 }

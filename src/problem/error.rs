@@ -1,5 +1,5 @@
 //! Why a run fails, and what may help.
-use crate::case::CaseErrors;
+use crate::case::{CaseErrors, abridged};
 use crate::cloud::CloudError;
 use crate::geometry::GeometryError;
 use crate::motion::MotionError;
@@ -191,8 +191,8 @@ impl RunError {
     pub fn messages(&self) -> Vec<String> {
         match self {
             Self::Several(all) => all.iter().flat_map(Self::messages).collect(),
-            Self::Geometry(GeometryError::Several(all)) => all.iter().map(ToString::to_string).collect(),
-            one => vec![one.to_string()],
+            Self::Geometry(GeometryError::Several(all)) => all.iter().map(|e| abridged(&e.to_string())).collect(),
+            one => vec![abridged(&one.to_string())],
         }
     }
 

@@ -142,7 +142,7 @@ pub(crate) fn is_of(case: &Case, out: &Path) -> bool {
 }
 
 /// True where `out` is the folder of a run that has a checkpoint.
-pub(crate) fn has_begun(out: &Path) -> bool {
+pub fn has_begun(out: &Path) -> bool {
     checkpoint::is_there(&out.join(saved::FILE))
 }
 

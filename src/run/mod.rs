@@ -32,7 +32,7 @@ use crate::report::ReportError;
 
 pub use crate::problem::{Blame, BodyTable, Measures, RunError, body_table};
 pub use error_bars::solve;
-pub use folder::{Places, fresh_folder};
+pub use folder::{Places, fresh_folder, has_begun};
 pub use inspect::inspect;
 pub use outcome::Outcome;
 pub use refusals::refusals;

@@ -47,6 +47,9 @@ const STEP: f64 = 28.0;
 const STEP_GROWTH: f64 = 0.5;
 /// Residuals that a cloud takes the time of to be built, in the plane and in space.
 const BUILDING: [f64; 2] = [120.0, 230.0];
+/// Residuals of an implicit step in the shares of a run whose steps nobody has tried: of long ones, so that what is left rather falls than
+/// rises when the march begins.
+const LONG_STEP: f64 = 150.0;
 /// Steps of a march that a harmonic balance begins from, about.
 const LEAD_STEPS: f64 = 100.0;
 /// Residuals of a harmonic balance without and with each harmonic, its start included.
@@ -255,7 +258,9 @@ pub(crate) fn portion(
     let opening = n * BUILDING[dimension - 2];
     let work: Vec<f64> = [opening].into_iter().chain(of_stages(case, stages, n, (dimension, period))).collect();
     let family = spacing::asked(case).is_some();
-    Portion { may_end_early: family && k + 1 < stages.len(), ..Portion::of(k + 1, &work) }
+    let may_end_early = family && k + 1 < stages.len();
+    let is_even = stages.get(k).is_some_and(|stage| stage.task == Task::March);
+    Portion { may_end_early, is_even, ..Portion::of(k + 1, &work) }
 }
 
 /// Work of the stages, in residuals of a particle.
@@ -269,8 +274,8 @@ fn of_stages(case: &Case, stages: &[Stage], n: f64, (dimension, period): (usize,
             Task::Relax if stage.cycle > 0 && adapted => AGAIN * usual(n, dimension),
             Task::Relax if stage.factor == 1.0 && stage.cycle == 0 => usual(n, dimension) - BUILDING[dimension - 2],
             Task::Relax => usual(n, dimension),
-            Task::March => STEP * finer * steps(case, period),
-            Task::Lead => STEP * finer * LEAD_STEPS,
+            Task::March => LONG_STEP * finer * steps(case, period),
+            Task::Lead => LONG_STEP * finer * LEAD_STEPS,
             Task::Balance { harmonics } => (BALANCE[0] + BALANCE[1] * harmonics as f64) * finer,
         };
         n * each * if stage.point.unwrap_or(0) == 0 { 1.0 } else { NEXT_POINT }

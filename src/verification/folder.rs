@@ -1,11 +1,11 @@
 //! A folder with a case and what it claims.
-use std::fs;
 use std::path::{Path, PathBuf};
 
 use super::WalkError;
 use super::store::spacing_of;
 use crate::case::{Case, Length, read};
 use crate::claims::{ClaimFile, Study};
+use crate::problem::files::plain;
 
 /// Files of one case.
 pub(super) const FILES: [&str; 2] = ["case.toml", "claim.toml"];
@@ -27,7 +27,7 @@ impl Folder {
     /// Reads one case with its claims.
     pub fn read(path: &Path) -> Result<Self, WalkError> {
         let [case, claims] = FILES.map(|name| path.join(name));
-        let text = |p: &Path| fs::read_to_string(p).map_err(|e| unreadable(p, e));
+        let text = |p: &Path| plain(p).map_err(|e| unreadable(p, e));
         let wrong = |p: &Path, problem: String| WalkError::Mistakes { path: p.display().to_string(), problem };
         let claims_read = ClaimFile::parse(&text(&claims)?).map_err(|e| wrong(&claims, e.to_string()))?;
         let case_read = read(&text(&case)?, &case.display().to_string()).map_err(|e| wrong(&case, e.to_string()))?;
@@ -38,7 +38,7 @@ impl Folder {
     /// Another case file of the same folder.
     pub(super) fn beside(&self, file: &str) -> Result<Self, WalkError> {
         let path = self.path.join(file);
-        let text = fs::read_to_string(&path).map_err(|e| unreadable(&path, e))?;
+        let text = plain(&path).map_err(|e| unreadable(&path, e))?;
         let wrong = |e: crate::case::CaseErrors| WalkError::Mistakes {
             path: path.display().to_string(),
             problem: e.to_string(),

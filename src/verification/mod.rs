@@ -14,6 +14,7 @@ use crate::claims::calibration::{KnownLoad, holding, median_ratio};
 use crate::claims::metric::{BarMetric, FlutterMetric, ForceMetric, StudyMetric};
 use crate::claims::{Claim, ClaimRow, Metric, Sample, Table, metrics};
 use crate::observe::loads::Coefficients;
+use crate::problem::files::plain;
 use crate::study::Monitor;
 use folder::{FILES, respaced, unreadable};
 use measure::{Measured, Value};
@@ -255,7 +256,7 @@ impl Walk {
     fn calibrate(&mut self, (metric, claim): (BarMetric, &Claim), folder: &Folder, monitor: &mut dyn Monitor) -> Value {
         let name = claim.file.as_deref().ok_or("the claim names no `file` of loads")?;
         let wrong = |e: &dyn std::fmt::Display| format!("`{name}`: {e}");
-        let text = fs::read_to_string(folder.path.join(name)).map_err(|e| wrong(&e))?;
+        let text = plain(&folder.path.join(name)).map_err(|e| wrong(&e))?;
         let known = Table::parse(&text).and_then(|t| KnownLoad::all(&t)).map_err(|e| wrong(&e))?;
         let mut loads = Vec::new();
         for row in &known {

@@ -14,11 +14,12 @@ use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
 
 use super::measure::{Measured, Numbers, solid};
-use crate::case::Case;
+use crate::case::{Case, read_regular};
 use crate::observe::table::write_json;
 use crate::observe::usage::cpu_seconds;
 use crate::observe::{Checkpoint, checkpoint};
 use crate::problem::RunError;
+use crate::problem::files::plain;
 use crate::record::flutter::Boundary;
 use crate::record::gaf::Column;
 use crate::run::{Outcome, Session, flutter, gaf};
@@ -87,7 +88,7 @@ pub fn build_of_this_program() -> Option<String> {
 
 /// What cases took last, by name; empty where nothing is kept in `folder`.
 pub fn times(folder: &Path) -> BTreeMap<String, TimeTaken> {
-    let text = fs::read_to_string(folder.join(TIMES)).unwrap_or_default();
+    let text = plain(&folder.join(TIMES)).unwrap_or_default();
     serde_json::from_str(&text).unwrap_or_default()
 }
 
@@ -328,7 +329,7 @@ impl Job<'_> {
         format!("{:?}", self.case).hash(&mut hash);
         let case = serde_json::to_value(self.case).unwrap_or_default();
         for file in texts(&case).into_iter().map(|text| self.folder.join(text)).filter(|path| path.is_file()) {
-            fs::read(file).unwrap_or_default().hash(&mut hash);
+            read_regular(&file).unwrap_or_default().hash(&mut hash);
         }
         let plain = |c: char| if c.is_alphanumeric() || "-_.".contains(c) { c } else { '-' };
         let name: String = self.name.chars().map(plain).collect();

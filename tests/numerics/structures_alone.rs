@@ -158,18 +158,30 @@ fn checkpoints_with_numbers_that_no_run_writes_are_refused() {
         wrong("it does not say how far it came", told(&out, |file| file.meta["iteration"] = (1u64 << 40).into()));
         wrong("another kind of study", told(&out, |file| file.meta["kind"] = "periodic".into()));
         assert!(told(&out, |file| file.fields.truncate(1)).contains("has no field"));
-        // those of versions that did not say what they are of
-        let nameless = |file: &mut Checkpoint<'static>| {
-            file.meta.as_object_mut().unwrap().retain(|name, _| name != "equations" && name != "method");
+        // what it does not say of itself is not believed
+        let without = |lost: &'static str| {
+            move |file: &mut Checkpoint<'static>| file.meta.as_object_mut().unwrap().retain(|name, _| name != lost)
         };
-        changed(&out, "spacing = 0.025", "spacing = 0.02");
-        wrong("its state is of another structure", told(&out, nameless));
-        changed(&out, "spacing = 0.02", "spacing = 0.025");
+        wrong("other bodies or contact", told(&out, without("equations")));
+        wrong("the run began with `[time.another]`", told(&out, without("method")));
+        // numbers of several places contradict one another
+        let lead = "its history does not lead to its state";
+        for k in 3..6 {
+            wrong(lead, told(&out, of("clock", move |v| v[k] += 1.0)));
+        }
+        wrong(lead, told(&out, of("clock", |v| v[0] = 1e300)));
+        wrong("its steps are longer", told(&out, of("clock", |v| v[0] = 1e-300)));
+        wrong(lead, told(&out, of("state", |v| v[5] += 1e-3)));
+        wrong(lead, told(&out, of("history", Vec::clear)));
+        wrong(lead, told(&out, |file| file.meta["iteration"] = 1_000_000.into()));
+        wrong("its history does not run forwards", told(&out, of("history", |v| v.fill(7.5))));
+        wrong("its steps are longer", told(&out, of("clock", |v| v[1] = 1e300)));
         assert!(gone_on(&out).is_ok());
     }
     let out = folder.path().join("explicit");
     began(&bar(EXPLICIT, ""), &out, 3);
     assert!(told(&out, of("clock", |v| v[2] = 0.0)).contains("does not run forwards"));
+    assert!(told(&out, of("clock", |v| v[2] = 1e300)).contains("its steps are longer"));
 }
 
 #[test]
@@ -227,4 +239,20 @@ fn steps_of_a_body_that_is_squeezed_are_those_that_it_takes() {
 fn a_march_without_end_has_at_least_so_many_steps() {
     let (endless, at_rest) = squeezed(1e3, 9, -1.0);
     assert!(endless.more_steps && endless.steps.unwrap() >= 0.99 * at_rest, "{endless:?} {at_rest}");
+}
+
+#[test]
+fn very_large_bodies_are_looked_at_with_fewer_particles() {
+    let of = |spacing: &str| {
+        let text = bar(EXPLICIT, "").replace("spacing = 0.025", &format!("spacing = {spacing}"));
+        inspect_structure(&case(&text), Path::new("")).unwrap()
+    };
+    let (large, small) = (of("0.0005"), of("0.0025"));
+    assert_eq!((large.particles, small.particles), (601 * 201, 121 * 41));
+    assert!(large.seen_on.is_some_and(|factor| factor > 1.0) && small.seen_on.is_none());
+    assert!(
+        (large.mass / small.mass - 1.0).abs() < 1e-9
+            && (5.0 * large.stable_step / small.stable_step - 1.0).abs() < 0.05
+    );
+    assert!(large.bytes > small.bytes && large.seconds > small.seconds, "{large:?} {small:?}");
 }

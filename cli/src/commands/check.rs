@@ -1,7 +1,7 @@
 //! `alula check`.
 use std::path::{Path, PathBuf};
 
-use alula::case::{Angle, Case, write};
+use alula::case::{Angle, Case, abridged, write};
 use alula::math::digits::short;
 use alula::run;
 use serde_json::{Value, json};
@@ -38,7 +38,7 @@ pub(crate) fn check(args: &arguments::Check) -> Outcome {
         Ok(report) => {
             let title = format!("{}: no mistakes in `{}`\n", args.case.display(), case.title);
             let structure = report.structure.as_ref().map(describe_structure).unwrap_or_default();
-            output::data(&(title + &points(&case) + &super::cloud::describe(&report) + &structure))
+            output::data(&abridged(&(title + &points(&case) + &super::cloud::describe(&report) + &structure)))
         }
         Err(problem) => super::refuse(&problem),
     }
@@ -59,7 +59,10 @@ fn structure(case: &Case, input: &Path, args: &arguments::Check) -> Outcome {
     }
     report.warnings.iter().for_each(|w| output::note(&format!("warning: {w}")));
     let title = format!("{}: no mistakes in `{}`\n", args.case.display(), case.title);
-    output::data(&(title + &describe_structure(&report)))
+    let least = if report.more_steps { " or more" } else { "" };
+    let time = report.seconds.map(|s| format!("time           {}{least}\n", super::cloud::readable(s)));
+    let cost = format!("memory         about {:.0} MB\n{}", report.bytes / 1e6, time.unwrap_or_default());
+    output::data(&abridged(&(title + &describe_structure(&report) + &cost)))
 }
 
 /// A structure in words.
@@ -82,12 +85,19 @@ fn describe_structure(r: &run::SolidReport) -> String {
         lines.push(format!("load {}         acts on {area:.6e}", k + 1));
     }
     lines.push(format!("force          ({}) in all", list(r.force.iter().map(|f| format!("{f:.6e}")).collect())));
-    lines.push(format!("explicit step  {:.3e} s at most", r.stable_step));
+    if r.stable_step.is_finite() {
+        lines.push(format!("explicit step  {:.3e} s at most", r.stable_step));
+    }
     if let Some(steps) = r.steps {
         lines.push(match r.more_steps {
             true => format!("steps          {steps:.0} or more: they become shorter where the body is squeezed"),
             false => format!("steps          about {steps:.0}"),
         });
+    }
+    if let Some(factor) = r.seen_on {
+        lines.push(format!(
+            "looked at      bodies with {factor:.3} times the distance of particles; particles are counted without making them"
+        ));
     }
     lines.join("\n") + "\n"
 }

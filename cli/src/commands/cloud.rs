@@ -73,7 +73,7 @@ pub(crate) fn describe(r: &CloudReport) -> String {
     text += &format!("memory         {memory}\ntime           {time}\ndisk           {disk}\n");
     for (command, cost) in [("gaf", &r.gaf), ("flutter", &r.flutter)] {
         let told = cost.as_ref().map(|cost| format!("{}, {}", megabytes(cost), readable(cost.seconds)));
-        text += &told.map_or_else(String::new, |told| format!("{:<15}{told}\n", format!("`alula {command}`")));
+        text += &told.map_or_else(String::new, |told| format!("{:<14} {told}\n", format!("`alula {command}`")));
     }
     r.notes.iter().for_each(|n| text += &format!("note: {n}\n"));
     r.warnings.iter().for_each(|w| text += &format!("warning: {w}\n"));
@@ -84,11 +84,16 @@ fn megabytes(cost: &run::Cost) -> String {
     format!("about {:.0} MB", cost.bytes / 1e6)
 }
 
-fn readable(seconds: f64) -> String {
+/// Longest time that is told in hours.
+const LONGEST: f64 = 365.0 * 24.0 * 3600.0;
+
+/// A time in words.
+pub(super) fn readable(seconds: f64) -> String {
     match seconds {
         s if s < 10.0 => format!("about {s:.1} s"),
         s if s < 90.0 => format!("about {s:.0} s"),
         s if s < 5400.0 => format!("about {:.0} min", s / 60.0),
-        s => format!("about {:.1} h", s / 3600.0),
+        s if s < LONGEST => format!("about {:.1} h", s / 3600.0),
+        _ => "more than a year".to_owned(),
     }
 }

@@ -32,7 +32,7 @@ pub(crate) fn flutter(args: &arguments::Flutter) -> Outcome {
             Err(outcome) => return outcome,
         }
     }
-    let mut watch = Watch::new(args.verbosity);
+    let mut watch = watched(&out, args.verbosity);
     let found = match &forces {
         Some(file) => run::flutter::again(&case, &places, file, &mut watch),
         None => run::flutter::flutter(&case, &places, &mut watch),
@@ -48,9 +48,25 @@ fn place_within(file: &Path, folder: &Path) -> Option<PathBuf> {
 
 /// Goes on with the boundary in the folder `out`.
 pub(crate) fn resume(out: &Path, verbosity: Verbosity) -> Outcome {
-    let mut watch = Watch::new(verbosity);
+    let mut watch = watched(out, verbosity);
     let found = run::flutter::resume(out, &mut watch);
     tell(found, out, &mut watch, verbosity)
+}
+
+/// A watch over the boundary in the folder `out`.
+fn watched(out: &Path, verbosity: Verbosity) -> Watch {
+    let folder = out.to_path_buf();
+    Watch::new(verbosity).with_farewell(move || interrupted(&folder))
+}
+
+/// Says how to go on with a boundary that was told to stop.
+fn interrupted(out: &Path) {
+    let table = out.join("flutter.csv");
+    let what = match table.is_file() {
+        true => format!("interrupted: Mach numbers that were finished stand in `{}`", table.display()),
+        false => "interrupted before the first Mach number was finished".to_owned(),
+    };
+    output::note(&format!("{what}; go on with `alula resume {}`", out.display()));
 }
 
 /// What was found in the folder `out`.
@@ -59,12 +75,7 @@ fn tell(found: Result<Option<Boundary>, RunError>, out: &Path, watch: &mut Watch
     let boundary = match found {
         Ok(Some(boundary)) => boundary,
         Ok(None) => {
-            let table = out.join("flutter.csv");
-            let what = match table.is_file() {
-                true => format!("interrupted: Mach numbers that were finished stand in `{}`", table.display()),
-                false => "interrupted before the first Mach number was finished".to_owned(),
-            };
-            output::note(&format!("{what}; go on with `alula resume {}`", out.display()));
+            interrupted(out);
             return Outcome::Interrupted;
         }
         Err(problem) => return super::refuse(&problem),

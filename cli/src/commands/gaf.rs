@@ -26,20 +26,14 @@ pub(crate) fn gaf(args: &arguments::Gaf) -> Outcome {
     {
         return outcome;
     }
-    let mut watch = Watch::new(args.verbosity);
+    let folder = out.clone();
+    let mut watch = Watch::new(args.verbosity).with_farewell(move || interrupted(&folder));
     let found = run::gaf::gaf(&case, &places, &mut watch);
     watch.progress().finish();
     let matrices = match found {
         Ok(Some(matrices)) => matrices,
         Ok(None) => {
-            let kept = out.join("gaf.csv");
-            let what = match kept.exists() {
-                true => format!("interrupted; the columns found so far are in `{}`", kept.display()),
-                false => "interrupted before the first column was found".to_owned(),
-            };
-            output::note(&format!(
-                "{what}: `alula gaf` is not resumed, but begins again, in another folder or with `--force`"
-            ));
+            interrupted(&out);
             return Outcome::Interrupted;
         }
         Err(problem) => return super::refuse(&problem),
@@ -49,6 +43,17 @@ pub(crate) fn gaf(args: &arguments::Gaf) -> Outcome {
         false => table(&matrices) + &format!("matrices: {}\n", out.join("gaf.csv").display()),
     };
     results(&found, shortfall(&matrices), args.verbosity)
+}
+
+/// Says what is kept in the folder `out` of matrices that were not all found.
+fn interrupted(out: &Path) {
+    let kept = out.join("gaf.csv");
+    let what = match kept.exists() {
+        true => format!("interrupted; the columns found so far are in `{}`", kept.display()),
+        false => "interrupted before the first column was found".to_owned(),
+    };
+    let again = format!("begin it again with the same case, in the same folder with `--out {}`", out.display());
+    output::note(&format!("{what}: `alula gaf` is not resumed; {again}"));
 }
 
 /// All columns, for programs.

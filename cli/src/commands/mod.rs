@@ -1,7 +1,7 @@
 //! One file for each command.
 use std::path::{Path, PathBuf};
 
-use alula::case::{Case, read_in, read_regular, text_of};
+use alula::case::{Case, read_in, read_written, text_of};
 use alula::observe::usage::threads_of_environment;
 use alula::run::{Blame, RunError, fresh_folder};
 
@@ -68,7 +68,7 @@ fn threaded(threads: Threads, command: impl FnOnce() -> Outcome) -> Outcome {
 /// The case in the file at `path`; its mistakes are told.
 fn load(path: &Path) -> Result<Case, Outcome> {
     let name = path.display().to_string();
-    let text = match read_regular(path) {
+    let text = match read_written(path) {
         Ok(bytes) => text_of(&bytes).map_err(|problem| {
             let hint = "a case file is TOML, saved as UTF-8; start from `alula new airfoil`";
             output::error_in(Some(&name), &format!("cannot read `{name}`: {problem}"), hint);

@@ -29,7 +29,7 @@ pub(crate) fn run(args: &arguments::Run) -> Outcome {
     {
         return outcome;
     }
-    let mut watch = Watch::new(args.verbosity);
+    let mut watch = watched(&out, args.verbosity);
     let ended = match &args.from {
         Some(from) => run::run_from(&case, &places, from, &mut watch),
         None => run::run(&case, &places, &mut watch),
@@ -47,6 +47,25 @@ pub(crate) fn tell(ended: Result<Ended, RunError>, out: &Path, watch: &mut Watch
         Ok(Ended::Interrupted { iteration }) => interrupted(out, iteration, verbosity),
         Err(problem) => super::refuse(&problem),
     }
+}
+
+/// A watch over the run in the folder `out`.
+pub(super) fn watched(out: &Path, verbosity: Verbosity) -> Watch {
+    let folder = out.to_path_buf();
+    Watch::new(verbosity).with_farewell(move || {
+        let text = match run::has_begun(&folder) {
+            true => format!("interrupted; go on with `alula resume {}`", folder.display()),
+            false => {
+                let out = folder.display();
+                format!("interrupted before the first iteration; begin it again, in the same folder with `--out {out}`")
+            }
+        };
+        if verbosity.json {
+            output::event("interrupted", json!({ "run": folder, "message": text }));
+        } else {
+            output::message(&format!("{text}\n"));
+        }
+    })
 }
 
 /// Says how to go on with a run that was told to stop.

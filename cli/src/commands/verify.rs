@@ -45,18 +45,15 @@ fn judge(mut walk: Walk, args: &arguments::Verify) -> Outcome {
         }
         None => output::message("warning: nothing is kept: the system does not tell which file this program is"),
     }
-    let mut watch = Watch::new(Verbosity { json: false, quiet: false });
+    let keep = build.is_some().then(|| args.keep.clone());
+    let leave = move || interrupted(keep.as_deref());
+    let mut watch = Watch::new(Verbosity { json: false, quiet: false }).with_farewell(leave.clone());
     let mut rows = Vec::new();
     let mut cpu_seconds = 0.0;
     for k in 0..walk.len() {
         let Some(judged) = walk.judge(k, &mut watch) else {
             watch.progress().finish();
-            if build.is_some() {
-                output::message(&format!(
-                    "interrupted; the same command goes on with what `{}` keeps",
-                    args.keep.display()
-                ));
-            }
+            leave();
             return Outcome::Interrupted;
         };
         let spent: Vec<Spent> = walk.spent().cloned().collect();
@@ -225,6 +222,13 @@ fn write_page(rows: &[ClaimRow], path: &Path) -> Result<(), String> {
             .map_err(|e| format!("cannot make `{}`: {e}\nhint: work in a folder you can write to", folder.display()))?;
     }
     write_verification_page(rows, path).map_err(|e| e.to_string())
+}
+
+/// Says how to go on with a walk that was told to stop, where something is kept.
+fn interrupted(keep: Option<&Path>) {
+    if let Some(keep) = keep {
+        output::message(&format!("interrupted; the same command goes on with what `{}` keeps", keep.display()));
+    }
 }
 
 #[cfg(test)]

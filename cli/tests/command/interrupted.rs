@@ -10,9 +10,18 @@ const FLUTTER: &str = "[structure]\nmodel = \"typical_section\"\nelastic_axis = 
 const GAF: &str =
     "[gaf]\nreduced_frequencies = [0.1, 0.2, 0.4, 0.8]\nmodes = [\"plunge\", \"pitch\"]\npivot = [0.25, 0.0]\n";
 
+/// A body whose cloud takes some seconds to build.
+const LARGE: &str =
+    "[flow]\nmach = 0.3\n[[body]]\nsphere = { radius = 0.5 }\n[cloud]\nspacing = 0.02\nfar_field = 8.0\n";
+
 /// Interrupts `alula COMMAND` by a signal as soon as it tells of forces; what it says from then on.
 fn interrupted(folder: &Path, command: &str, case: &str, signal: &str) -> String {
-    std::fs::write(folder.join("case.toml"), format!("{SECTION}{case}")).unwrap();
+    interrupted_at("forces at k", folder, command, &format!("{SECTION}{case}"), signal)
+}
+
+/// The same as soon as it says `when`.
+fn interrupted_at(when: &str, folder: &Path, command: &str, case: &str, signal: &str) -> String {
+    std::fs::write(folder.join("case.toml"), case).unwrap();
     let mut child = Command::new(env!("CARGO_BIN_EXE_alula"))
         .args([command, "case.toml", "--out", "out"])
         .current_dir(folder)
@@ -21,8 +30,8 @@ fn interrupted(folder: &Path, command: &str, case: &str, signal: &str) -> String
         .spawn()
         .unwrap();
     let mut lines = BufReader::new(child.stderr.take().unwrap()).lines().map(Result::unwrap);
-    let seen = lines.find(|line| line.contains("forces at k"));
-    assert!(seen.is_some(), "no forces were told");
+    let seen = lines.find(|line| line.contains(when));
+    assert!(seen.is_some(), "`{when}` was not told");
     assert!(Command::new("kill").args([signal, &child.id().to_string()]).status().unwrap().success());
     let rest = lines.collect::<Vec<_>>().join("\n");
     assert_eq!(child.wait().unwrap().code(), Some(130), "{rest}");
@@ -73,4 +82,19 @@ fn matrices_that_are_interrupted_at_their_forces_say_what_is_there() {
     let told = interrupted(folder.path(), "gaf", GAF, "-INT");
     assert!(told.contains("interrupted"), "{told}");
     names_what_is_there(folder.path(), &told);
+}
+
+#[test]
+fn clouds_that_are_built_keep_no_signal_waiting() {
+    for (command, more, told) in [
+        ("run", "", "begin it again, in the same folder with `--out out`"),
+        ("gaf", &*GAF.replace("0.0]", "0.0, 0.0]"), "begin it again with the same case, in the same folder"),
+    ] {
+        let folder = tempfile::tempdir().unwrap();
+        let case = format!("{LARGE}{more}");
+        let said = interrupted_at("building the cloud", folder.path(), command, &case, "-TERM");
+        assert!(said.contains(told), "{said}");
+        // nothing was iterated, and nothing keeps the folder
+        assert!(!folder.path().join("out/checkpoint.alula").exists() && !said.contains("iteration  "), "{said}");
+    }
 }

@@ -238,3 +238,25 @@ fn all_that_keeps_a_case_from_being_computed_is_told_at_once() {
         assert!(text.contains(word), "no `{word}` in {text}");
     }
 }
+
+#[test]
+fn numbers_of_hundreds_of_digits_are_told_in_powers_of_ten() {
+    let folder = tempfile::tempdir().unwrap();
+    let cases = [
+        "[flow]\nmach = 0.5\nalpha = 1e300\n[[body]]\nnaca = \"0012\"\n",
+        "[flow]\nmach = 0.5\nreynolds = 1e-300\n[[body]]\nnaca = \"0012\"\n",
+        "[flow]\nmach = 0.5\n[[body]]\nnaca = \"0012\"\n[cloud]\nspacing = 1e300\n",
+        "[[body]]\nbox = { size = [1, 0.2] }\nscale = 1e200\n[body.solid]\nmaterial = \"steel 4340\"\n[time.modes]\n",
+    ];
+    for case in cases {
+        std::fs::write(folder.path().join("case.toml"), case).unwrap();
+        for words in [&["check", "case.toml"][..], &["check", "case.toml", "--json"]] {
+            let output =
+                Command::new(env!("CARGO_BIN_EXE_alula")).args(words).current_dir(folder.path()).output().unwrap();
+            assert_eq!(output.status.code(), Some(2), "{case}");
+            let told = [output.stdout, output.stderr].concat();
+            let longest = told.split(|b| !b.is_ascii_digit()).map(<[u8]>::len).max();
+            assert!(longest < Some(30), "{case}: {}", String::from_utf8_lossy(&told));
+        }
+    }
+}

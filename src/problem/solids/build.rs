@@ -6,7 +6,7 @@ use super::cut::{Cut, cuts};
 use super::filling::{Part, Plan};
 use super::material::material;
 use super::probes::probes;
-use super::size::{Wanted, fit};
+use super::size::{Factors, Wanted, fit, together};
 use crate::case::formula::Formula;
 use crate::case::{Body, Case, Domain, PlaneState, Solid as Data, SolidPlace, Temporal};
 use crate::geometry::load_surface;
@@ -40,6 +40,16 @@ pub(crate) struct Built<const D: usize> {
     pub(crate) notes: Vec<String>,
     /// What makes results doubtful.
     pub(crate) warnings: Vec<String>,
+}
+
+/// What is known of the particles of bodies before they are made.
+pub(crate) struct Expected {
+    /// Their number.
+    pub(crate) particles: f64,
+    /// Greatest memory of a process that studies the bodies alone.
+    pub(crate) bytes: f64,
+    /// Thickness of the thinnest body, in distances of its particles.
+    pub(crate) through: f64,
 }
 
 /// Which bodies of a case are filled with particles, and how.
@@ -78,6 +88,16 @@ impl<'a> Filling<'a> {
             Some(only) => self.case.bodies_of_particles().filter(|(k, ..)| *k == only).collect(),
             None => self.case.solids().collect(),
         }
+    }
+
+    /// What will fill the bodies, before a particle is made. Refuses what memory does not hold.
+    pub(crate) fn expected<const D: usize>(&self) -> Result<Expected, RunError> {
+        let plans = plans::<D>(self, &mut Vec::new())?;
+        let (wanted, factors) = (wanted(&plans), Factors::of(self.case, D));
+        fit(&wanted, &factors)?;
+        let size = together(&wanted);
+        let through = plans.iter().map(Plan::through).fold(f64::INFINITY, f64::min);
+        Ok(Expected { particles: size.particles, bytes: factors.process(&size), through })
     }
 
     /// Fills the bodies.
@@ -169,6 +189,13 @@ fn parts<'a, const D: usize>(
     notes: &mut Vec<String>,
     warnings: &mut Vec<String>,
 ) -> Result<Vec<Part<'a, D>>, RunError> {
+    let plans = plans::<D>(filling, notes)?;
+    fit(&wanted(&plans), &Factors::of(filling.case, D))?;
+    plans.into_iter().map(|plan| plan.filled(warnings)).collect()
+}
+
+/// What is to fill the bodies of a case.
+fn plans<'a, const D: usize>(filling: &Filling<'a>, notes: &mut Vec<String>) -> Result<Vec<Plan<'a, D>>, RunError> {
     let Filling { case, input, factor, .. } = *filling;
     let mut plans = Vec::new();
     for (number, body, data) in filling.bodies() {
@@ -181,9 +208,12 @@ fn parts<'a, const D: usize>(
         plan.led = case.motion_of(number).is_some() && data.supports.is_empty();
         plans.push(plan);
     }
-    let wanted = plans.iter().map(|p| Wanted { name: &p.name, spacing: p.spacing, size: p.size() });
-    fit(&wanted.collect::<Vec<_>>(), D)?;
-    plans.into_iter().map(|plan| plan.filled(warnings)).collect()
+    Ok(plans)
+}
+
+/// What the bodies take.
+fn wanted<'p, const D: usize>(plans: &'p [Plan<'_, D>]) -> Vec<Wanted<'p>> {
+    plans.iter().map(|p| Wanted { name: &p.name, spacing: p.spacing, size: p.size() }).collect()
 }
 
 /// The particles of all bodies together, with their neighbours and weights.

@@ -16,6 +16,9 @@ const FEW: usize = 5;
 /// more than what it is closed to.
 const FARTHEST: f64 = 1e6;
 
+/// Thickness of a body over its extent and its distance from the origin that round-off of coordinates closes.
+const CLOSED: f64 = 1e-13;
+
 /// One body on its way, with what is to fill it.
 pub(super) struct Plan<'a, const D: usize> {
     /// What the case says of it.
@@ -84,6 +87,15 @@ impl<'a, const D: usize> Plan<'a, D> {
         }
     }
 
+    /// Thickness of the body in distances of its particles: that of a plate with its volume and surface, where there are no rows.
+    pub(super) fn through(&self) -> f64 {
+        let thickness = match &self.rows {
+            Some(corners) => shortest(&self.surface, Some(corners)),
+            None => 2.0 * self.surface.volume().abs() / self.surface.area(),
+        };
+        thickness / self.spacing
+    }
+
     /// Fills the body, and turns it where it is one of revolution; what makes its results doubtful is added to `warnings`.
     pub(super) fn filled(self, warnings: &mut Vec<String>) -> Result<Part<'a, D>, RunError> {
         let (fill, rows) = match &self.rows {
@@ -101,9 +113,16 @@ impl<'a, const D: usize> Plan<'a, D> {
     }
 }
 
-/// Refuses bodies so far from the origin that their coordinates do not tell particles apart.
+/// Refuses bodies that are so thin, or so far from the origin, that their coordinates do not tell sides or particles apart.
 fn near<const D: usize>((name, body): (&str, &Body), surface: &Surface<D>, spacing: f64) -> Result<(), RunError> {
-    let centre = surface.bounds().centre();
+    let (centre, extent) = (surface.bounds().centre(), surface.bounds().extent());
+    let thinnest = (0..D).map(|d| extent[d]).fold(f64::INFINITY, f64::min);
+    if thinnest <= CLOSED * (centre.norm() + extent.norm()) {
+        return Err(RunError::Solid {
+            what: format!("`{name}` is {thinnest:.3e} thick: coordinates of its size do not tell its sides apart"),
+            hint: "check the units of its lengths".into(),
+        });
+    }
     if centre.norm() <= FARTHEST * spacing {
         return Ok(());
     }
@@ -156,6 +175,10 @@ fn corners<const D: usize>(body: &Body, surface: &Surface<D>) -> Option<Vec<Vect
                 if square && sides.len() < size.len() {
                     sides.push(edge);
                 }
+            }
+            // one that round-off of the coordinates has closed is no box
+            if sides.len() < D {
+                return None;
             }
             // along the axes as far as they go
             sides.sort_by_key(|s| (0..D).max_by(|a, b| s[*a].abs().total_cmp(&s[*b].abs())));

@@ -35,8 +35,8 @@ pub(crate) use solids::{draw_solid, write_solid};
 pub(crate) use state::write_state_script;
 pub(crate) use target::{Scene, Target};
 
-/// Columns of the fields of a film.
-const FILMED: [&str; 4] = ["density", "velocity", "pressure", "vorticity"];
+/// Columns of the fields of a film, that which it is coloured by first among them.
+const FILMED: [&str; 5] = ["density", "velocity", "pressure", "mach", "vorticity"];
 
 /// Writes all files of a run that is over.
 pub(crate) fn write_all<const D: usize>(

@@ -22,6 +22,9 @@ use crate::time::forced::Place;
 /// Numbers of a row of the history before those of its probes.
 const OF_ROW: usize = 10;
 
+/// Steps of an explicit march over the longest that are stable where it stands now: they are found again every few steps.
+const LONGER: f64 = 2.0;
+
 /// The checkpoint of a run of a structure alone.
 pub(in super::super) struct Saved(Checkpoint<'static>);
 
@@ -73,8 +76,7 @@ impl Saved {
         let meta = |name: &str| saved.0.meta.get(name).filter(|v| !v.is_null());
         require(meta("kind").is_some_and(|k| k == kind(case)), "it is of another kind of study")?;
         let named = out.display();
-        // versions that did not ask have neither of these
-        if meta("method").is_some_and(|m| m != method(case)) {
+        if meta("method").is_none_or(|m| m != method(case)) {
             let began = meta("method").and_then(Value::as_str).unwrap_or("another").to_owned();
             return Err(RunError::OtherRun {
                 what: format!(
@@ -84,7 +86,7 @@ impl Saved {
                 hint: "go on with the method that it began with, or begin another run",
             });
         }
-        if meta("equations").is_some_and(|known| *known != json!(equations_of(case))) {
+        if meta("equations").is_none_or(|known| *known != json!(equations_of(case))) {
             return Err(RunError::OtherRun {
                 what: format!("`{named}/case.toml` has other bodies or contact than those that the run began with"),
                 hint: "only `[output]` and how long and with which steps `[time]` goes on may change: put back the case as it was, or begin \
@@ -115,6 +117,12 @@ impl Saved {
         require(u.len() == unknowns(structure.fields()), "its state is of another structure")?;
         let known = before.is_empty() || before.len() == structure.displacements();
         require(known, "its forces are of another structure")?;
+        let stable = if matches!(case.time, Temporal::Explicit(_)) {
+            structure.stable_step(&u[..structure.displacements()])
+        } else {
+            f64::INFINITY
+        };
+        require(last <= time && next <= LONGER * stable, "its steps are longer than its march is stable with")?;
         let width = OF_ROW + 3 * built.probes.len();
         let rows = list("history")?;
         require(rows.len().is_multiple_of(width), "its history has other probes than the case")?;

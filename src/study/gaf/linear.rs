@@ -155,7 +155,7 @@ impl Asked<'_> {
         let shocks = source.is_supersonic();
         let all = in_order(&self.plan.reduced_frequencies);
         for (number, &k) in all.iter().enumerate() {
-            log.portion = log.portion.at(number as f64 / all.len() as f64);
+            log.portion = Portion { is_even: true, ..log.portion.at(number as f64 / all.len() as f64) };
             log.doing(&format!("forces at k = {k}, {} of {} frequencies", number + 1, all.len()));
             let found = at_frequency((self.case, self.plan), k, (&mut *source, &|| log.stopped()), self.length);
             let Some(found) = found else { return Ok(None) };

@@ -8,10 +8,15 @@ use super::trial;
 use crate::case::{Case, Temporal};
 use crate::geometry::dimension;
 use crate::problem::RunError;
-use crate::problem::solids::{Filling, supported};
+use crate::problem::solids::{Built, Filling, supported};
 use crate::solid::forces::State;
 use crate::solid::{Plane, Support};
 use crate::system::Mechanical;
+
+/// Particles through the thickness of such a body at least.
+const THROUGH: f64 = 8.0;
+/// Particles beyond which a body with fewer is looked at: a second or two to build.
+const QUICK: f64 = 60_000.0;
 
 /// A structure of particles before it is computed, in SI units; in the plane of the thickness of the case, of a whole turn about an axis.
 #[derive(Clone, Debug, Serialize)]
@@ -42,6 +47,12 @@ pub struct SolidReport {
     pub steps: Option<f64>,
     /// True where `steps` are at least so many: a trial of an explicit march was not over soon.
     pub more_steps: bool,
+    /// Greatest memory of a process that studies the structure alone.
+    pub bytes: f64,
+    /// Seconds that its march takes on this machine, at least so many where `more_steps` is true; absent elsewhere.
+    pub seconds: Option<f64>,
+    /// Factor on the distance of particles of the bodies that all but their number was seen on, where theirs are very many.
+    pub seen_on: Option<f64>,
     /// What makes results doubtful.
     pub warnings: Vec<String>,
 }
@@ -61,7 +72,11 @@ pub(super) fn inspect_in_gas(case: &Case, input: &Path) -> Result<Option<SolidRe
 }
 
 fn report<const D: usize>(case: &Case, input: &Path) -> Result<SolidReport, RunError> {
-    let filling = Filling::of(case, input);
+    let own = Filling::of(case, input);
+    let expected = own.expected::<D>()?;
+    let enough = expected.through / THROUGH;
+    let factor = (expected.particles / QUICK).powf(1.0 / D as f64).min(enough).max(1.0);
+    let filling = own.coarser(factor);
     let built = filling.build::<D>()?;
     if case.has_gas() {
         filling.remembers(&built)?;
@@ -75,28 +90,21 @@ fn report<const D: usize>(case: &Case, input: &Path) -> Result<SolidReport, RunE
     let state = State { time: 0.0, step: 0.0, displacement: &still, velocity: &still, history: &history };
     let mut force = vec![[0.0; D]; n];
     solid.all_outside(&state, &mut force);
-    let stable_step = structure.stable_step(&vec![0.0; n * D]);
-    let (steps, more_steps) = match &case.time {
-        // the step of the gas is another one
-        Temporal::Explicit(e) if case.has_gas() => (e.until.map(|until| until.0 / (e.cfl * stable_step)), true),
-        Temporal::Newmark(n) => (Some(n.until.0 / n.step.0), false),
-        _ => trial::steps((case, filling), &built).map_or((None, false), |s| (Some(s.number), !s.is_known)),
-    };
+    let stable_step = structure.stable_step(&vec![0.0; n * D]) / factor;
+    let (steps, more_steps, seconds) = pace(case, (filling, &built), factor, stable_step);
     let mut warnings = built.warnings;
     // a body of revolution moves as a whole along its axis alone
     let holds = |s: &Support<D>| solid.plane != Plane::Axisymmetric || s.fixed[1];
     if matches!(case.time, Temporal::Steady(_)) && !solid.supports.iter().any(holds) {
         warnings.push("nothing holds the structure: it has no equilibrium but where all forces cancel".into());
     }
-    let spacing = &solid.particles.spacing;
+    let (least, most) =
+        solid.particles.spacing.iter().fold((f64::INFINITY, 0.0_f64), |(a, b), h| (a.min(*h), b.max(*h)));
     Ok(SolidReport {
-        particles: n,
+        particles: if factor > 1.0 { expected.particles.round() as usize } else { n },
         neighbours: solid.particles.mean_neighbours(),
         correction: solid.particles.correction,
-        spacing: [
-            spacing.iter().fold(f64::INFINITY, |a, b| a.min(*b)),
-            spacing.iter().fold(0.0, |a: f64, b| a.max(*b)),
-        ],
+        spacing: [least / factor, most / factor],
         bodies: built.bodies,
         mass: built.thickness * solid.mass().iter().sum::<f64>(),
         held: solid.supports.iter().map(|s| s.particles.len()).collect(),
@@ -110,6 +118,29 @@ fn report<const D: usize>(case: &Case, input: &Path) -> Result<SolidReport, RunE
         stable_step,
         steps,
         more_steps,
+        bytes: expected.bytes,
+        seconds,
+        seen_on: (factor > 1.0).then_some(factor),
         warnings,
     })
+}
+
+/// Steps of the march of a case, whether there are at least so many, and seconds of an explicit one; of the bodies `built`, which have `factor` times the
+/// distance of particles of the case, whose longest explicit step is `stable_step`.
+fn pace<const D: usize>(
+    case: &Case,
+    (filling, built): (Filling<'_>, &Built<D>),
+    factor: f64,
+    stable_step: f64,
+) -> (Option<f64>, bool, Option<f64>) {
+    match &case.time {
+        // the step of the gas is another one
+        Temporal::Explicit(e) if case.has_gas() => (e.until.map(|until| until.0 / (e.cfl * stable_step)), true, None),
+        Temporal::Newmark(n) => (Some(n.until.0 / n.step.0), false, None),
+        _ => match trial::steps((case, filling), built) {
+            // there are more steps of more particles where these are nearer to one another
+            Some(s) => (Some(factor * s.number), !s.is_known, Some(factor.powi(D as i32 + 1) * s.seconds)),
+            None => (None, false, None),
+        },
+    }
 }

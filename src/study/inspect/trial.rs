@@ -21,6 +21,8 @@ pub(super) struct Steps {
     pub(super) number: f64,
     /// True where a trial came to its end, so that it is about that many; else there are at least so many.
     pub(super) is_known: bool,
+    /// Seconds that they take.
+    pub(super) seconds: f64,
 }
 
 /// Steps of the explicit march of the structure `built` of a case; `None` of other studies.
@@ -28,7 +30,7 @@ pub(super) fn steps<const D: usize>((case, filling): (&Case, Filling<'_>), built
     let Temporal::Explicit(plan) = &case.time else { return None };
     let plan = Plan { cfl: plan.cfl, until: plan.until?.0 };
     let at_rest = step_at_rest(built);
-    let mut least = plan.until / (plan.cfl * at_rest);
+    let (mut least, mut each) = (plan.until / (plan.cfl * at_rest), 0.0);
     for factor in FACTORS {
         let coarse = (factor > 1.0).then(|| filling.coarser(factor).build::<D>());
         let body = match &coarse {
@@ -37,26 +39,33 @@ pub(super) fn steps<const D: usize>((case, filling): (&Case, Filling<'_>), built
             Some(Err(_)) => break,
         };
         let finer = step_at_rest(body) / at_rest;
-        match march(body, plan) {
-            Ok(number) => return Some(Steps { number: finer * number, is_known: true }),
-            Err(number) => least = least.max(finer * number),
+        let (number, is_over, seconds_of_step) = march(body, plan);
+        if each == 0.0 {
+            each = seconds_of_step;
         }
+        let number = finer * number;
+        if is_over {
+            return Some(Steps { number, is_known: true, seconds: each * number });
+        }
+        least = least.max(number);
     }
-    Some(Steps { number: least, is_known: false })
+    Some(Steps { number: least, is_known: false, seconds: each * least })
 }
 
-/// Steps of the march of a body, or, as an error, how many there are at least where it is not over soon.
-fn march<const D: usize>(body: &Built<D>, plan: Plan) -> Result<f64, f64> {
+/// Steps of the march of a body, whether it is over soon, else there are at least so many, and the seconds of one of them.
+fn march<const D: usize>(body: &Built<D>, plan: Plan) -> (f64, bool, f64) {
     let (start, system) = (body.structure.start(|i| body.velocity[i]), &body.structure);
     let (began, mut march) = (Instant::now(), Symplectic::new(system, plan, Past::default(), start));
+    let each = |steps: u32| began.elapsed().as_secs_f64() / f64::from(steps.max(1));
     while !march.finished() {
         let mark = march.mark();
         let to_come = if mark.last > 0.0 { (plan.until - mark.time) / mark.last } else { 0.0 };
         if began.elapsed() > LONGEST || march.advance().is_err() {
-            return Err(f64::from(mark.iteration) + to_come);
+            return (f64::from(mark.iteration) + to_come, false, each(mark.iteration));
         }
     }
-    Ok(f64::from(march.mark().iteration))
+    let steps = march.mark().iteration;
+    (f64::from(steps), true, each(steps))
 }
 
 fn step_at_rest<const D: usize>(body: &Built<D>) -> f64 {

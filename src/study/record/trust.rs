@@ -32,6 +32,7 @@ impl Saved<'_> {
         let (arrays, numbers) = self.reals();
         require(arrays.iter().all(|a| a.iter().all(|x| x.is_finite())), "a field holds what is not a finite number")?;
         require(!numbers.iter().any(|x| x.is_nan()) && self.time.is_finite(), "a number is not one")?;
+        require(case.is_unsteady() || self.time == 0.0, "a steady flow has no time")?;
         if let Memory::Relaxation(relax) = &self.memory {
             require(relax.cfl > 0.0, "its Courant number is not positive")?;
         }
@@ -65,6 +66,8 @@ impl Saved<'_> {
     pub(crate) fn agrees(&self, history: &IterationHistory) -> Result<(), RunError> {
         let told = ["cl", "cd", "cm", "point"].map(|name| history.column(name));
         let [Some(cl), Some(cd), Some(cm), point] = told else { return Ok(()) };
+        let counted = history.column("iteration").and_then(|all| all.last().copied());
+        require(counted.is_none_or(|last| last == self.iteration as f64), "its history ends at another iteration")?;
         let same = |a: f64, b: f64| a == b || (a - b).abs() <= SAME * (1.0 + b.abs());
         let is_at = |loads: [f64; 3], row: usize| [cl, cd, cm].iter().zip(loads).all(|(told, a)| same(a, told[row]));
         for (k, own) in self.polar.points.iter().enumerate() {

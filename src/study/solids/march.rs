@@ -1,5 +1,6 @@
 //! Marching and equilibrium of structures alone: what is recorded on the way, and checkpoints.
 use super::super::monitor::{MarchTick, Monitor, Tick};
+use super::super::record::saved::require;
 use super::super::time_left::Portion;
 use super::super::watch::{Ending, Now, Observer, Wish, drive};
 use super::keeper::{SolidKeeper, Standing};
@@ -103,9 +104,12 @@ impl<const D: usize> Study<'_, D> {
             None => Standing { past: Past::default(), u, rows: Vec::new(), work: Work::default() },
         };
         let pace = Pace::new(&self.case.output, u64::from(past.iteration));
+        let begins = past.iteration == 0 && rows.is_empty();
         let mut integrator = self.integrator(past, u);
-        if rows.is_empty() {
-            rows.push(self.row(&mut Now::at(integrator.as_mut()), &work));
+        let present = self.row(&mut Now::at(integrator.as_mut()), &work);
+        match begins {
+            true => rows.push(present),
+            false => leads_to(&rows, &present)?,
         }
         let mut log = SolidLog { study: self, rows, work, monitor };
         let mut energies = Energies { before: self.before(&mut Now::at(integrator.as_mut())) };
@@ -156,7 +160,7 @@ impl<const D: usize> Study<'_, D> {
         let until = self.until();
         Tick {
             iteration: u64::from(mark.iteration),
-            portion: Portion::whole((mark.time / until).clamp(0.0, 1.0)),
+            portion: Portion::even((mark.time / until).clamp(0.0, 1.0)),
             residual: mark.residual,
             cfl: 1.0,
             loads: None,
@@ -258,6 +262,13 @@ impl<const D: usize> Study<'_, D> {
         let state = now.standing().state;
         self.keeper.map_or(Ok(()), |keeper| keeper.frame(number as usize, time, self.built, state))
     }
+}
+
+/// Refuses a history that does not lead to the moment at which the march stands, whose energies, work and probes are computed from its state anew.
+fn leads_to(rows: &[Row], present: &Row) -> Result<(), RunError> {
+    require(rows.windows(2).all(|w| w[0].is_before(&w[1])), "its history does not run forwards")?;
+    let leads = rows.last().is_some_and(|last| last == present || last.is_before(present));
+    require(leads, "its history does not lead to its state")
 }
 
 /// What a march of a structure finds on its way.

@@ -5,7 +5,7 @@ use super::super::look::Snapshot;
 use crate::solid::forces::Energy;
 
 /// Work since the start.
-#[derive(Clone, Copy, Debug, Default)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct Work {
     /// Of loads and gravity.
     pub(crate) loads: f64,
@@ -23,7 +23,7 @@ impl Work {
 }
 
 /// A row of `history.csv`; in the plane of the thickness of the case.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Row {
     pub(crate) step: u32,
     pub(crate) time: f64,
@@ -31,6 +31,13 @@ pub(crate) struct Row {
     pub(crate) work: Work,
     /// Displacement of each probe.
     pub(crate) probes: Vec<[f64; 3]>,
+}
+
+impl Row {
+    /// True where this row is of an earlier moment than `other`.
+    pub(crate) fn is_before(&self, other: &Self) -> bool {
+        self.step < other.step && self.time < other.time
+    }
 }
 
 /// What was found of a structure alone, in SI units.

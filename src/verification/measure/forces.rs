@@ -1,5 +1,4 @@
 //! What is measured of forces of small motions: how far they are from a table.
-use std::fs;
 use std::path::Path;
 
 use num_complex::Complex64;
@@ -8,6 +7,7 @@ use super::{Value, at_no_thickness, designed_thickness};
 use crate::case::Case;
 use crate::claims::metric::ForceMetric;
 use crate::claims::{Claim, Table};
+use crate::problem::files::plain;
 use crate::record::gaf::Column;
 
 /// Part by which reduced frequencies may differ.
@@ -22,7 +22,7 @@ pub(in super::super) fn value(
 ) -> Value {
     let name = claim.file.as_deref().ok_or("the claim names no `file` of forces")?;
     let wrong = |e: &dyn std::fmt::Display| format!("`{name}`: {e}");
-    let text = fs::read_to_string(folder.join(name)).map_err(|e| wrong(&e))?;
+    let text = plain(&folder.join(name)).map_err(|e| wrong(&e))?;
     let table = Table::parse(&text).map_err(|e| wrong(&e))?;
     let words = |column: &str| table.text(column).map_err(|e| wrong(&e));
     let numbers = |column: &str| table.column(column).map_err(|e| wrong(&e));

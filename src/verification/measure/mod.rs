@@ -22,6 +22,7 @@ use crate::exact::blasius::{layer, skin_friction};
 use crate::math::{Bounds, Vector};
 use crate::observe::cycles::Cycles;
 use crate::physics::{Gas, Primitive};
+use crate::problem::files::plain;
 use crate::scheme::start::free_stream;
 use crate::study::{LastPeriod, Snapshot};
 
@@ -218,7 +219,7 @@ impl Measured {
         let found = match (&claim.file, other) {
             (Some(file), _) => {
                 let (path, problem) = (folder.join(file), |e: &dyn std::fmt::Display| format!("`{file}`: {e}"));
-                let text = std::fs::read_to_string(path).map_err(|e| problem(&e))?;
+                let text = plain(&path).map_err(|e| problem(&e))?;
                 let table = Table::parse(&text).map_err(|e| problem(&e))?;
                 let column = |name: &str| table.column(name).map_err(|e| problem(&e));
                 loops::greatest_difference(own, &column("phase")?, &column(name)?)
@@ -306,7 +307,7 @@ impl Measured {
 
     fn differences_to_file(&self, chosen: &[usize], path: &Path) -> Result<Vec<f64>, String> {
         let problem = |e: &dyn std::fmt::Display| format!("`{}`: {e}", path.display());
-        let text = std::fs::read_to_string(path).map_err(|e| problem(&e))?;
+        let text = plain(path).map_err(|e| problem(&e))?;
         let table = Table::parse(&text).map_err(|e| problem(&e))?;
         let curve = |side: &str| -> Result<Curve, String> {
             table.only("surface", side).curve("x_c", "Cp").map_err(|e| problem(&e))

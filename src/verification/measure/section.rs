@@ -5,6 +5,7 @@ use super::{Measured, no_wall};
 use crate::claims::wall::contains;
 use crate::claims::{Claim, Table};
 use crate::geometry::{dimension, load_surface};
+use crate::problem::files::plain;
 
 impl Measured {
     /// Cp on the walls less that of the reference, at every row of the table `file` of the claim (within its `region`): `y` along the
@@ -15,7 +16,7 @@ impl Measured {
         if dimension(&self.case) != 3 {
             return Err("sections are cut in space".into());
         }
-        let text = std::fs::read_to_string(folder.join(name)).map_err(|e| problem(&e))?;
+        let text = plain(&folder.join(name)).map_err(|e| problem(&e))?;
         let table = Table::parse(&text).map_err(|e| problem(&e))?;
         let column = |name: &str| table.column(name).map_err(|e| problem(&e));
         let (y, x_c, cp) = (column("y")?, column("x_c")?, column("Cp")?);

@@ -5,6 +5,8 @@ use std::ops::Range;
 use annotate_snippets::{AnnotationKind, Level, Renderer, Snippet};
 use serde::Serialize;
 
+use super::text::abridged;
+
 /// Greatest length of a quotation from the file in a message.
 const LONGEST_QUOTE: usize = 48;
 /// Greatest length of a list of permitted values that is shown beside a hint.
@@ -73,6 +75,12 @@ impl CaseError {
         self
     }
 
+    /// Tells long numbers in powers of ten.
+    fn abridge(&mut self) {
+        self.message = abridged(&self.message);
+        [&mut self.allowed, &mut self.hint].into_iter().flatten().for_each(|told| *told = abridged(told));
+    }
+
     /// Restricts the span to one line of `text`, whose lines start at `starts`, and computes line and columns from it.
     fn locate(&mut self, text: &str, starts: &[usize]) {
         let start = boundary(text, self.span.start);
@@ -92,7 +100,10 @@ impl CaseError {
 impl CaseErrors {
     pub(super) fn new(name: &str, text: &str, mut errors: Vec<CaseError>) -> Self {
         let starts: Vec<usize> = std::iter::once(0).chain(text.match_indices('\n').map(|(i, _)| i + 1)).collect();
-        errors.iter_mut().for_each(|e| e.locate(text, &starts));
+        errors.iter_mut().for_each(|e| {
+            e.locate(text, &starts);
+            e.abridge();
+        });
         errors.sort_by_key(|e| e.span.start);
         errors.dedup();
         let lines = errors.iter().take(MOST_SHOWN).map(|e| line_of(&text[starts[e.line - 1]..])).collect();

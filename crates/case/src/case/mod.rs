@@ -78,7 +78,10 @@ pub use structure::{
     Freedom, PerCoordinate, SpringShape, Structure, StructureFlap, StructureForce, StructureMode, StructureModel,
 };
 pub use templates::{SCHEMA_FILE, SCHEMA_LINE, TEMPLATES, mode_files, template};
-pub use text::{TextError, decimal_comma, numbers_of, open_regular, read_regular, rounded, separator, text_of};
+pub use text::{
+    TextError, abridged, decimal_comma, numbers_of, open_regular, read_regular, read_written, refuse_longer, rounded,
+    separator, text_of,
+};
 pub use time::{
     Automatic, Dual, Explicit, HarmonicCount, Harmonics, Modes, Newmark, RungeKutta, Steady, SteadyMethod, Temporal,
 };

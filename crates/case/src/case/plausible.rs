@@ -21,6 +21,10 @@ const HARDLY_MOVING: f64 = 0.005;
 const STILL: f64 = 1e-7;
 /// Mach number of no gas whose γ is one number: at rest it is 2000 times as hot as in the stream.
 const FASTEST: f64 = 100.0;
+/// Ratio of specific heats of no gas: 5/3 of one atom, 7 of water taken for a gas.
+const STIFFEST: f64 = 10.0;
+/// Steps that no march comes to the end of: as many as a day of ten thousand a second.
+const ENDLESS: f64 = 1e9;
 /// Greatest angle of attack, with what degrees are rounded by.
 const HALF_TURN: f64 = PI * (1.0 + 1e-12);
 
@@ -31,10 +35,35 @@ pub(super) fn doubtful(draft: &mut Draft<'_>) {
     still(draft);
     angles(draft);
     amplitudes(draft);
+    stiff(draft);
+    endless(draft);
     let wrong = draft.errors.iter().any(|e| e.path.starts_with("flow"));
     if let Some(flow) = stream(draft).filter(|_| !wrong) {
         fast(draft, &flow);
         viscous(draft, &flow);
+    }
+}
+
+/// Ratios of specific heats that no gas has.
+fn stiff(draft: &mut Draft<'_>) {
+    if let Some(gamma) = draft.number("flow.gamma").filter(|gamma| *gamma > STIFFEST) {
+        let message = format!("no gas has a ratio of specific heats of {}", number(gamma));
+        draft.fail("flow.gamma", message).allowed(format!("at most {STIFFEST}")).hint("air has 1.4");
+    }
+}
+
+/// Marches of more steps than any computer takes.
+fn endless(draft: &mut Draft<'_>) {
+    for table in ["time.dual", "time.newmark"] {
+        let of = |key: &str| draft.number(&format!("{table}.{key}"));
+        let by_time = of("until").zip(of("step")).map(|(until, step)| (until / step, "until"));
+        let by_period = of("periods").zip(of("steps_per_period")).map(|(periods, each)| (periods * each, "periods"));
+        let Some((steps, key)) = by_time.or(by_period).filter(|(steps, _)| *steps > ENDLESS) else { continue };
+        let message = format!("the march would take {} steps", number(steps));
+        draft
+            .fail(&format!("{table}.{key}"), message)
+            .allowed(format!("at most {ENDLESS:e} steps"))
+            .hint("take longer steps or an earlier end: check the units of both");
     }
 }
 
@@ -187,6 +216,15 @@ mod tests {
         assert_eq!(told("mach = 12", ""), "");
         let wrong = told("velocity = \"300 m/s\"\npressure = 101325\ntemperature = \"15 degX\"", "");
         assert!(!wrong.contains("as hot"), "{wrong}");
+    }
+
+    #[test]
+    fn gases_that_there_are_not_and_marches_without_end_are_refused() {
+        all(&told("mach = 0.3\ngamma = 1e300", ""), &["t:3:9", "ratio of specific heats of 1e300", "at most 10"]);
+        assert_eq!(told("mach = 0.3\ngamma = 1.6667", ""), "");
+        let march = |time: &str| told("mach = 0.3", &format!("[time.dual]\n{time}"));
+        all(&march("step = 1e-300\nuntil = 10"), &["would take 1e301 steps", "at most 1e9 steps"]);
+        assert_eq!(march("step = 1e-3\nuntil = 1e4"), "");
     }
 
     #[test]

@@ -3,6 +3,9 @@ use std::fs::File;
 use std::io::{Error, ErrorKind, Read};
 use std::path::Path;
 
+/// Greatest size of a file of text in bytes: forces of a hundred modes at a hundred frequencies take a tenth of it.
+const LONGEST: u64 = 1 << 30;
+
 /// Reason why bytes are not text.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum TextError {
@@ -34,6 +37,22 @@ pub fn read_regular(path: &Path) -> std::io::Result<Vec<u8>> {
     Ok(bytes)
 }
 
+/// The same of a file of text, which is rejected where it is larger than any that people or programs write.
+pub fn read_written(path: &Path) -> std::io::Result<Vec<u8>> {
+    refuse_longer(&open_regular(path)?, LONGEST)?;
+    read_regular(path)
+}
+
+/// Rejects a file of more than `most` bytes before any of them is read.
+pub fn refuse_longer(file: &File, most: u64) -> std::io::Result<()> {
+    let length = file.metadata()?.len();
+    if length <= most {
+        return Ok(());
+    }
+    let what = format!("it has {length} bytes, more than the {most} that are read");
+    Err(Error::new(ErrorKind::FileTooLarge, what))
+}
+
 /// Decodes `bytes` as UTF-8, or as UTF-16 with a byte order mark or with first characters of which one byte is zero.
 /// The byte order mark is removed, and line ends `\r` of old Macintosh programs become `\n`.
 pub fn text_of(bytes: &[u8]) -> Result<String, TextError> {
@@ -61,6 +80,27 @@ fn read(bytes: &[u8], other: fn(&[u8]) -> Result<String, TextError>) -> Result<S
 pub fn rounded(value: f64, digits: usize) -> String {
     let value: f64 = format!("{value:.*e}", digits.saturating_sub(1)).parse().unwrap_or(value);
     if (1e-3..1e6).contains(&value.abs()) { format!("{value}") } else { format!("{value:e}") }
+}
+
+/// `text` with numbers that have very many digits in powers of ten: 1e300 for a one with 300 zeros.
+pub fn abridged(text: &str) -> String {
+    /// Digits of the longest number that stays as it is.
+    const MOST: usize = 30;
+    /// Digits of a number that is told.
+    const TOLD: usize = 6;
+    let (mut short, mut rest) = (String::with_capacity(text.len()), text);
+    while let Some(at) = rest.find(|c: char| c.is_ascii_digit()) {
+        let end = rest[at..].find(|c: char| !c.is_ascii_digit() && c != '.').unwrap_or(rest.len() - at);
+        let number = rest[at..at + end].trim_end_matches('.');
+        short += &rest[..at];
+        match number.parse::<f64>() {
+            _ if number.len() <= MOST => short += number,
+            Ok(value) if value.is_finite() && value > 0.0 => short += &rounded(value, TOLD),
+            _ => short += &format!("{}…", &number[..2 * TOLD]),
+        }
+        rest = &rest[at + number.len()..];
+    }
+    short + rest
 }
 
 /// Separator of the columns of a table: the first of `;`, tab and comma that appears in its header.
@@ -99,6 +139,26 @@ fn utf16(bytes: &[u8], unit: fn([u8; 2]) -> u16) -> Result<String, TextError> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_file_that_is_too_large_is_rejected_before_it_is_read() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("case.toml");
+        std::fs::write(&path, "mach = 0.5").unwrap();
+        assert_eq!(read_written(&path).unwrap(), b"mach = 0.5");
+        // a hole takes no place on the disk
+        File::create(&path).unwrap().set_len(1 << 40).unwrap();
+        let told = read_written(&path).unwrap_err().to_string();
+        assert_eq!(told, "it has 1099511627776 bytes, more than the 1073741824 that are read");
+    }
+
+    #[test]
+    fn numbers_with_hundreds_of_digits_are_told_in_powers_of_ten() {
+        let (large, small) = (format!("{}", 1.25e300), format!("{}", 1e-300));
+        let told = abridged(&format!("`x` is {large}, not -{small} or 1.5e-7 or 0.0060. It is. 12"));
+        assert_eq!(told, "`x` is 1.25e300, not -1e-300 or 1.5e-7 or 0.0060. It is. 12");
+        assert_eq!(abridged(&"9".repeat(400)), "999999999999…");
+    }
 
     #[test]
     fn every_usual_encoding_gives_the_same_text() {

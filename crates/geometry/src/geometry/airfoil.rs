@@ -23,7 +23,7 @@ use std::io::Read;
 use table::Table;
 
 /// Longest file that is read, bytes: a section with a million points.
-const LONGEST: u64 = 64 << 20;
+pub(super) const LONGEST: u64 = 64 << 20;
 
 /// Length of a chord that is given in percent, and by how much it may differ from that.
 const PERCENT: [f64; 2] = [100.0, 1.0];

@@ -14,7 +14,7 @@ use crate::math::Vector;
 use std::io::Read;
 
 /// Greatest size of a file in bytes: 80 million triangles.
-const LONGEST: u64 = 4 << 30;
+pub(super) const LONGEST: u64 = 4 << 30;
 
 /// Triangles as given in a file.
 #[derive(Clone, Debug, Default)]

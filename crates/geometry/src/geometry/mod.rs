@@ -48,7 +48,7 @@ pub use sampling::Chain;
 pub use shell::{Edge, Exact, Shell};
 pub use surface::{Element, Nearest, Projection, Skin, Surface};
 
-use crate::case::{Body, Case, Length, Naca, ProfileSides, Shape, numbers_of, open_regular};
+use crate::case::{Body, Case, Length, Naca, ProfileSides, Shape, numbers_of, open_regular, refuse_longer};
 use crate::math::{Bounds, Vector};
 use std::f64::consts::PI;
 use std::fs::File;
@@ -249,7 +249,7 @@ fn load_shell(name: &str, body: &Body, folder: &Path, notes: &mut Vec<String>) -
     Ok(match &body.shape {
         Shape::Naca(naca) => AnyShell::Plane(naca::shell(naca)?),
         Shape::Airfoil(file) => {
-            AnyShell::Plane(airfoil::read(file, opened(folder, file)?, body.placement.scale, notes)?)
+            AnyShell::Plane(airfoil::read(file, opened(folder, file, airfoil::LONGEST)?, body.placement.scale, notes)?)
         }
         Shape::Polygon(points) => {
             let points: Vec<Vector<2>> = points.iter().map(|p| Vector(*p)).collect();
@@ -264,7 +264,7 @@ fn load_shell(name: &str, body: &Body, folder: &Path, notes: &mut Vec<String>) -
         Shape::Box { size } => box_shell(&place, size, notes)?,
         Shape::Surface(file) => {
             let within = body.weld.map(|l| l.0 / body.placement.scale);
-            let soup = mesh::read(file, opened(folder, file)?, notes)?;
+            let soup = mesh::read(file, opened(folder, file, mesh::LONGEST)?, notes)?;
             let shell = repair::shell(file, &soup, within, notes)?;
             notes.extend(shell.noise(&shell.joints()).map(|noise| noise.told(file, shell.crease)));
             AnyShell::Space(shell)
@@ -319,16 +319,18 @@ fn section_of(
     match (naca, file) {
         (Some(naca), _) => naca::shell(naca).map(Some),
         (_, Some(file)) => {
-            let outline = airfoil::read(file, opened(folder, file)?, 1.0, notes)?;
+            let outline = airfoil::read(file, opened(folder, file, airfoil::LONGEST)?, 1.0, notes)?;
             chord_line::section_of_wing(file, outline, notes).map(Some)
         }
         _ => Ok(None),
     }
 }
 
-/// Opens a file in `folder`.
-fn opened(folder: &Path, file: &str) -> Result<File, GeometryError> {
-    open_regular(&folder.join(file)).map_err(|source| GeometryError::Open { file: file.to_string(), source })
+/// Opens a file in `folder` that has at most so many bytes.
+fn opened(folder: &Path, file: &str, most: u64) -> Result<File, GeometryError> {
+    let opened = open_regular(&folder.join(file));
+    let opened = opened.and_then(|opened| refuse_longer(&opened, most).map(|()| opened));
+    opened.map_err(|source| GeometryError::Open { file: file.to_string(), source })
 }
 
 /// The shell that `make` returns for straight or smooth sides; every corner between straight sides is sharp.
