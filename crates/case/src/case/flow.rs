@@ -3,7 +3,7 @@
 //! Perfect gas: p = ρ R T, c = √(γ p/ρ), V = M c. Without dimensional values ρ = 1 and c = 1, hence p = 1/γ.
 use serde::{Deserialize, Serialize};
 
-use super::body::Body;
+use super::Body;
 use super::kinds::{ANGLE, POSITIVE, SIZE};
 use super::quantity::{Angle, Density, Length, Pressure, Temperature, Velocity, Viscosity};
 use super::schema::{Absent, Field, Kind, Range, Table, Variant, defaulted, keys, optional, words};

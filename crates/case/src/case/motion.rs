@@ -5,13 +5,12 @@
 //! and the coordinates q of its modes. Sines are amplitude·sin(ωt + phase): α = α_m + α_0 sin ωt as in the AGARD cases,
 //! with the mean α_m from `flow.alpha` or
 //! `rotate`. Pitch is nose up positive and plunge is up positive.
-use super::Case;
-use super::body::Shape;
 use super::flow::Flow;
 use super::kinds::{ANGLE, LENGTH, POINT, POSITIVE, SIZE};
 use super::quantity::{Angle, Frequency, Length, Rate, Time, Velocity};
 use super::schema::{Absent, Kind, List, Range, defaulted, keys, optional, required, words};
 use super::time::Temporal;
+use super::{Case, Shape};
 
 /// A direction in two or three dimensions.
 const DIRECTION: Kind = Kind::List(&List { item: Kind::Number(Range::ANY), min: 2, max: 3, single: false });

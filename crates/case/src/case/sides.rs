@@ -9,7 +9,10 @@ pub(super) const SIDES: [(&str, &str); 3] = [("x_min", "x_max"), ("y_min", "y_ma
 
 const SIDE: &[Variant] = &[
     Variant::word("far_field", "free stream, with the vortex of the lift in 2-D; waves leave"),
-    Variant::word("held", "the state of `[initial]` held for ever (supersonic inflow, exact solutions)"),
+    Variant::word(
+        "held",
+        "the state of `[initial]` held for all times (supersonic inflow, inlets of channels, exact solutions); waves leave",
+    ),
     Variant::table("outflow", &OUTFLOW, "zero normal gradient; with a static pressure when the outflow is subsonic"),
     Variant::word("symmetry", "plane of symmetry"),
     Variant::word("periodic", "periodic with the opposite side"),

@@ -4,13 +4,12 @@
 //! axisymmetric case, y is the axis and x the radius.
 use serde::{Deserialize, Serialize};
 
-use super::Case;
-use super::body::Body;
 use super::initial::Initial;
 use super::kinds::{LENGTH, POINT, SIZE};
 use super::quantity::{Acceleration, Density, Force, Length, PerTime, Pressure, SpecificHeat, Temperature, Time};
 use super::schema::{Absent, Kind, List, Range, defaulted, keys, optional, required, words};
 use super::structure::StructureModel;
+use super::{Body, Case};
 
 const ANY: Kind = Kind::Number(Range::ANY);
 const PART: Kind = Kind::Number(Range::between(0.0, 1.0));
