@@ -169,19 +169,21 @@ fn checkpoints_with_numbers_that_no_run_writes_are_refused() {
         for k in 3..6 {
             wrong(lead, told(&out, of("clock", move |v| v[k] += 1.0)));
         }
-        wrong(lead, told(&out, of("clock", |v| v[0] = 1e300)));
-        wrong("its steps are longer", told(&out, of("clock", |v| v[0] = 1e-300)));
+        for forged in [1e300, 1e-300] {
+            wrong(lead, told(&out, of("clock", move |v| v[0] = forged)));
+        }
         wrong(lead, told(&out, of("state", |v| v[5] += 1e-3)));
         wrong(lead, told(&out, of("history", Vec::clear)));
         wrong(lead, told(&out, |file| file.meta["iteration"] = 1_000_000.into()));
         wrong("its history does not run forwards", told(&out, of("history", |v| v.fill(7.5))));
-        wrong("its steps are longer", told(&out, of("clock", |v| v[1] = 1e300)));
         assert!(gone_on(&out).is_ok());
     }
     let out = folder.path().join("explicit");
     began(&bar(EXPLICIT, ""), &out, 3);
     assert!(told(&out, of("clock", |v| v[2] = 0.0)).contains("does not run forwards"));
-    assert!(told(&out, of("clock", |v| v[2] = 1e300)).contains("its steps are longer"));
+    for k in 1..3 {
+        assert!(told(&out, of("clock", move |v| v[k] = 1e300)).contains("its steps are longer"));
+    }
 }
 
 #[test]

@@ -9,7 +9,7 @@ mod probes;
 mod size;
 mod spline_modes;
 
-pub(crate) use build::{Built, Filling};
+pub(crate) use build::{Built, Expected, Filling};
 pub(in crate::problem) use natural::structure;
 pub(crate) use natural::{NaturalMode, NaturalModes};
 pub(crate) use own_modes::own_modes;

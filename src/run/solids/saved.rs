@@ -22,8 +22,8 @@ use crate::time::forced::Place;
 /// Numbers of a row of the history before those of its probes.
 const OF_ROW: usize = 10;
 
-/// Steps of an explicit march over the longest that are stable where it stands now: they are found again every few steps.
-const LONGER: f64 = 2.0;
+/// Steps of an explicit march over the longest that are stable where it stands now: one that breaks off has been squeezed since they were found.
+const LONGER: f64 = 1e3;
 
 /// The checkpoint of a run of a structure alone.
 pub(in super::super) struct Saved(Checkpoint<'static>);
@@ -122,7 +122,7 @@ impl Saved {
         } else {
             f64::INFINITY
         };
-        require(last <= time && next <= LONGER * stable, "its steps are longer than its march is stable with")?;
+        require(last.max(next) <= LONGER * stable, "its steps are longer than its march is stable with")?;
         let width = OF_ROW + 3 * built.probes.len();
         let rows = list("history")?;
         require(rows.len().is_multiple_of(width), "its history has other probes than the case")?;

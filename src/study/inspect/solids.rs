@@ -8,7 +8,7 @@ use super::trial;
 use crate::case::{Case, Temporal};
 use crate::geometry::dimension;
 use crate::problem::RunError;
-use crate::problem::solids::{Built, Filling, supported};
+use crate::problem::solids::{Built, Expected, Filling, supported};
 use crate::solid::forces::State;
 use crate::solid::{Plane, Support};
 use crate::system::Mechanical;
@@ -72,12 +72,8 @@ pub(super) fn inspect_in_gas(case: &Case, input: &Path) -> Result<Option<SolidRe
 }
 
 fn report<const D: usize>(case: &Case, input: &Path) -> Result<SolidReport, RunError> {
-    let own = Filling::of(case, input);
-    let expected = own.expected::<D>()?;
-    let enough = expected.through / THROUGH;
-    let factor = (expected.particles / QUICK).powf(1.0 / D as f64).min(enough).max(1.0);
-    let filling = own.coarser(factor);
-    let built = filling.build::<D>()?;
+    let expected = Filling::of(case, input).expected::<D>()?;
+    let (factor, filling, built) = sample(Filling::of(case, input), &expected)?;
     if case.has_gas() {
         filling.remembers(&built)?;
     } else if let Temporal::Harmonics(plan) = &case.time {
@@ -123,6 +119,19 @@ fn report<const D: usize>(case: &Case, input: &Path) -> Result<SolidReport, RunE
         seen_on: (factor > 1.0).then_some(factor),
         warnings,
     })
+}
+
+/// The bodies that are looked at: those of the case, or with some times the distance of particles where theirs are very many.
+fn sample<'a, const D: usize>(own: Filling<'a>, expected: &Expected) -> Result<(f64, Filling<'a>, Built<D>), RunError> {
+    let factor = (expected.particles / QUICK).powf(1.0 / D as f64).min(expected.through / THROUGH);
+    if factor > 1.0 {
+        let filling = own.coarser(factor);
+        // what fewer particles have no place for, as a load on a small part of the surface, more may have
+        if let Ok(built) = filling.build::<D>() {
+            return Ok((factor, filling, built));
+        }
+    }
+    Ok((1.0, own, own.build::<D>()?))
 }
 
 /// Steps of the march of a case, whether there are at least so many, and seconds of an explicit one; of the bodies `built`, which have `factor` times the
