@@ -247,7 +247,7 @@ fn wrapped(text: &str, columns: usize) -> String {
         let mut now = String::new();
         for word in line.split(' ') {
             let length = now.chars().count();
-            if length > INDENT.len() && length + 1 + word.chars().count() > columns {
+            if !now.trim_start().is_empty() && length + 1 + word.chars().count() > columns {
                 lines.push(std::mem::replace(&mut now, INDENT.to_owned() + word));
             } else {
                 now += if length == 0 { "" } else { " " };

@@ -234,7 +234,7 @@ fn a_field_at_the_start_may_be_formulas_of_the_position() {
     let good = case("velocity = [\"6 * y * (1 - y)\", 0]\ndensity = 2\n");
     let Initial::Formula { velocity, density, pressure } = read(&good, "case.toml").unwrap().initial else { panic!() };
     assert_eq!((velocity.len(), velocity[1].as_str(), density.as_deref(), pressure), (2, "0.0", Some("2.0"), None));
-    assert_shows(&case("density = 1"), &["`initial.formula.velocity`"]);
+    assert_shows(&case("density = 1"), &["missing key `velocity` in `[initial.formula]`"]);
     assert_shows(&case("velocity = [1, \"z\"]"), &["unknown name `z`"]);
     assert_shows(&case("velocity = [1, \"sin(t)\"]"), &["uses `t`, but it is a field at the start"]);
     assert_shows(&case("velocity = [1, 2, 3]"), &["has 3 components in a 2-D case"]);
