@@ -164,8 +164,11 @@ fn formulas(draft: &mut Draft<'_>, d: usize) {
                     .fail(&path, format!("`{path}` uses `t`, but it is a field at the start"))
                     .hint("use `x`, `y` and `z` alone");
             }
-            Ok(Formula::Number(value)) if value <= 0.0 && !path.contains("velocity") => {
-                draft.fail(&path, format!("`{path}` is {value}")).allowed("greater than 0");
+            Ok(formula) if !(0..d).any(|k| formula.contains(&Formula::Coordinate(k))) && !path.contains("velocity") => {
+                let value = formula.value(0.0, 0.0);
+                if value <= 0.0 {
+                    draft.fail(&path, format!("`{path}` is {value}")).allowed("greater than 0");
+                }
             }
             _ => {}
         }
