@@ -85,15 +85,10 @@ pub(crate) fn relax<S: HasGas<D>, const D: usize>(
             level += 1;
             continue;
         }
-        let resting = relax.resting();
-        let rests =
-            hurried && !relax.finished() && resting >= if asked.is_some() { PATIENCE } else { PATIENCE_AT_REST };
-        if !(rests && enough) {
-            if rests {
-                let orders = -relax.drop().log10();
-                log.note(&format!(
-                    "the flow has not come nearer to a steady one for {resting} iterations, at {orders:.1} orders: the run goes on from there"
-                ));
+        let stands = hurried && stands_still(&relax, asked.is_some());
+        if !(stands && enough) {
+            if stands {
+                tell_standstill(&relax, log);
             }
             break enough;
         }
@@ -109,6 +104,19 @@ pub(crate) fn relax<S: HasGas<D>, const D: usize>(
     let (gas, own) = (system.gas(), system.gas_unknowns());
     gas.without_circulation(system.gas_frame(&frame), system.gas_work(&mut work), &mut state[own]);
     Ok(Some(Reached { state, end: Some((frame, end)), enough, unsteady }))
+}
+
+/// True where the residual of a cloud that others follow has not fallen for so long that these are taken at once.
+fn stands_still<S: Implicit>(relax: &Relax<'_, S>, is_of_family: bool) -> bool {
+    !relax.finished() && relax.resting() >= if is_of_family { PATIENCE } else { PATIENCE_AT_REST }
+}
+
+/// Says that the run goes on from a flow that is not steady yet.
+fn tell_standstill<S: Implicit>(relax: &Relax<'_, S>, log: &mut Log<'_>) {
+    let (resting, orders) = (relax.resting(), -relax.drop().log10());
+    log.note(&format!(
+        "the flow has not come nearer to a steady one for {resting} iterations, at {orders:.1} orders: the run goes on from there"
+    ));
 }
 
 /// Orders of magnitude that the residual of this stage has to fall by, one after the other. On a cloud of a family the first serve where its loads
